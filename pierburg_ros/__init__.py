@@ -1,0 +1,1 @@
+"""The Pierburg mechatronic actuator: simulated, controlled, recorded, diagnosed."""
