@@ -1,0 +1,6 @@
+"""What is being simulated: actuators as data."""
+
+from pierburg_ros.actuators.actuator import Actuator, NominalParameter
+from pierburg_ros.actuators.description import SHIPPED, read_actuator
+
+__all__ = ["SHIPPED", "Actuator", "NominalParameter", "read_actuator"]
