@@ -1,0 +1,55 @@
+"""What physics exists: one file a phenomenon, listed here in the order of the signal path."""
+
+from __future__ import annotations
+
+from pierburg_ros.effects import (
+    armature_inductance,
+    backlash,
+    cogging_torque,
+    direction_dependent_friction,
+    external_load,
+    gear_compliance,
+    input_delay,
+    load_dependent_friction,
+    nonlinear_spring,
+    position_dependent_friction,
+    presliding,
+    pwm_deadband,
+    sensor_hysteresis,
+    sensor_lag,
+    sensor_nonlinearity,
+    sensor_quantization,
+    static_friction,
+    stop_compliance,
+    supply_sag,
+    thermal_resistance,
+    viscous_friction,
+)
+from pierburg_ros.effects.effect import Effect, Parameter
+
+EFFECTS: tuple[Effect, ...] = (
+    input_delay.EFFECT,
+    pwm_deadband.EFFECT,
+    supply_sag.EFFECT,
+    thermal_resistance.EFFECT,
+    armature_inductance.EFFECT,
+    backlash.EFFECT,
+    gear_compliance.EFFECT,
+    cogging_torque.EFFECT,
+    nonlinear_spring.EFFECT,
+    external_load.EFFECT,
+    stop_compliance.EFFECT,
+    viscous_friction.EFFECT,
+    static_friction.EFFECT,
+    load_dependent_friction.EFFECT,
+    direction_dependent_friction.EFFECT,
+    position_dependent_friction.EFFECT,
+    presliding.EFFECT,
+    sensor_hysteresis.EFFECT,
+    sensor_lag.EFFECT,
+    sensor_nonlinearity.EFFECT,
+    sensor_quantization.EFFECT,
+)
+EFFECT: dict[str, Effect] = {effect.id: effect for effect in EFFECTS}
+
+__all__ = ["EFFECT", "EFFECTS", "Effect", "Parameter"]

@@ -1,0 +1,47 @@
+"""Friction that differs between opening and closing."""
+
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.kernel import kernel
+
+EFFECT = Effect(
+    id="direction_dependent_friction",
+    stage="friction",
+    sentence="It runs easier one way than the other.",
+    equation="viscous coefficient + viscous_difference and friction level + coulomb_difference when closing",
+    origin=ARMSTRONG,
+    shows_in="closing movements",
+    record="slow and fast travel in both directions",
+    parameters=(
+        Parameter(
+            "viscous_difference",
+            "N.m.s/rad",
+            -1.0,
+            1.0,
+            (0.01, 0.15),
+            "additional damping when closing",
+            default=0.0,
+        ),
+        Parameter(
+            "coulomb_difference",
+            "N.m",
+            -1.0,
+            1.0,
+            (0.01, 0.1),
+            "additional friction level when closing",
+            default=0.0,
+        ),
+    ),
+    strength=("viscous_difference", "coulomb_difference"),
+)
+
+
+@kernel
+def damping(p, direction):
+    """Additional damping [N.m.s/rad] in `direction` (+1 opens, -1 closes)."""
+    return p.viscous_difference if direction < 0.0 else 0.0
+
+
+@kernel
+def level(p, direction):
+    """Additional friction level [N.m] in `direction` (+1 opens, -1 closes)."""
+    return p.coulomb_difference if direction < 0.0 else 0.0

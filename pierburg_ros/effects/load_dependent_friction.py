@@ -1,0 +1,22 @@
+"""Friction that grows with the torque the gear transmits."""
+
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.kernel import kernel
+
+EFFECT = Effect(
+    id="load_dependent_friction",
+    stage="friction",
+    sentence="The harder the motor pushes, the more the gear rubs.",
+    equation="friction level + coefficient abs(T_m)",
+    origin=ARMSTRONG,
+    shows_in="large duty, breaking loose under load",
+    record="steps to large and small duty at the same angle",
+    parameters=(Parameter("coefficient", "1", 0.0, 0.9, (0.02, 0.3), "share of the motor torque lost to friction"),),
+    strength=("coefficient",),
+)
+
+
+@kernel
+def level(p, motor_torque):
+    """Additional friction level [N.m]."""
+    return p.coefficient * abs(motor_torque)

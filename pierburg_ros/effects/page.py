@@ -1,0 +1,60 @@
+"""The documentation page of the effects, written from their declarations: `python -m pierburg_ros.effects.page`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pierburg_ros.effects import EFFECTS, Effect, Parameter
+
+HEAD = """\
+# The effects
+
+Written by `python -m pierburg_ros.effects.page > docs/effects.md`; edit the declarations, not this page.
+
+Everything the simulator can add to the paper's plant, in the order of the signal path. An effect is absent, bit for
+bit, while its strength is 0 (a stiffness of 0 is rigid). Any of them may act together. The names are those of the
+model file, of the ROS parameters of `plant` (`effect.parameter`) and of the diagnosis.
+
+w is the shaft velocity, x = angle / (pi/2), i the current, T_m = k_g k_m i the motor torque at the shaft, T_c the
+Coulomb friction. Load torques are positive when they close. *Accepted* bounds what may be given and what a fit may
+find; *plausible* is where a search starts.
+"""
+
+
+def page() -> str:
+    """The page, as Markdown."""
+    return "\n".join([HEAD, *_overview(), *(line for effect in EFFECTS for line in _section(effect))])
+
+
+def _overview() -> Iterator[str]:
+    yield "| acts on | effect | in one sentence |"
+    yield "|---|---|---|"
+    for effect in EFFECTS:
+        yield f"| {effect.stage} | [{effect.id}](#{effect.id}) | {effect.sentence} |"
+    yield ""
+
+
+def _section(effect: Effect) -> Iterator[str]:
+    yield f"## {effect.id}\n"
+    yield f"{effect.sentence}\n"
+    yield f"    {effect.equation}\n"
+    yield "| parameter | unit | accepted | plausible | default | meaning |"
+    yield "|---|---|---|---|---|---|"
+    for parameter in effect.parameters:
+        yield _row(effect, parameter)
+    yield f"\nShows in: {effect.shows_in}. To see it, record: {effect.record}. Source: {effect.origin}.\n"
+
+
+def _row(effect: Effect, parameter: Parameter) -> str:
+    low, high = parameter.plausible
+    accepted = " or ".join(f"{choice:g}" for choice in parameter.choices)
+    accepted = accepted or f"{parameter.minimum:g} to {parameter.maximum:g}"
+    default = "0, absent" if parameter.name in effect.strength else "must be given"
+    if parameter.name not in effect.strength and parameter.default is not None:
+        default = f"{parameter.default:g}"
+    name = f"**{parameter.name}**" if parameter.name in effect.strength else parameter.name
+    return f"| {name} | {parameter.unit} | {accepted} | {low:g} to {high:g} | {default} | {parameter.meaning} |"
+
+
+if __name__ == "__main__":
+    print(page(), end="")

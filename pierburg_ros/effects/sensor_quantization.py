@@ -1,0 +1,35 @@
+"""The resolution of the converter."""
+
+import math
+
+from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.kernel import kernel
+
+EFFECT = Effect(
+    id="sensor_quantization",
+    stage="sensor",
+    sentence="The measurement comes in steps.",
+    equation="measured value rounded to multiples of step",
+    origin=CONTRACT,
+    shows_in="standstills; a staircase at slow travel",
+    record="very slow ramps with little noise",
+    parameters=(
+        Parameter(
+            "step",
+            "V",
+            0.0,
+            1.0,
+            (0.001, 0.05),
+            "resolution (rad where the angle itself is measured)",
+        ),
+    ),
+    strength=("step",),
+)
+
+
+@kernel
+def rounded(p, value):
+    """`value` on the converter's grid, same unit."""
+    if p.step == 0.0:
+        return value
+    return math.floor(value / p.step + 0.5) * p.step

@@ -1,0 +1,56 @@
+"""Static friction above the sliding friction, with a Stribeck curve between them."""
+
+import math
+
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.kernel import kernel
+
+EFFECT = Effect(
+    id="static_friction",
+    stage="friction",
+    sentence="It sticks harder than it slides: after standing still the shaft breaks loose with a jump.",
+    equation="friction level T_c + (breakaway_torque - T_c) exp(-(w/stribeck_velocity)^2), "
+    "stick up to breakaway_torque",
+    origin=ARMSTRONG,
+    shows_in="first movement after standstill",
+    record="slow ramps with standstills between them",
+    parameters=(
+        Parameter(
+            "breakaway_torque",
+            "N.m",
+            0.0,
+            5.0,
+            (0.21, 0.32),
+            "torque that breaks the shaft loose; at least coulomb_friction",
+        ),
+        Parameter(
+            "stribeck_velocity",
+            "rad/s",
+            0.0,
+            20.0,
+            (0.02, 0.3),
+            "velocity over which the excess fades; 0: at once",
+            default=0.0,
+        ),
+    ),
+    strength=("breakaway_torque",),
+)
+
+
+@kernel
+def excess(p, coulomb_friction, velocity):
+    """Friction above the sliding level [N.m], at `velocity` [rad/s]."""
+    if p.breakaway_torque <= coulomb_friction:
+        return 0.0
+    if p.stribeck_velocity == 0.0:
+        return p.breakaway_torque - coulomb_friction if velocity == 0.0 else 0.0
+    ratio = velocity / p.stribeck_velocity
+    return (p.breakaway_torque - coulomb_friction) * math.exp(-ratio * ratio)
+
+
+@kernel
+def slope(p, velocity, excess):
+    """Derivative of `excess` [N.m] with respect to velocity [N.m.s/rad]."""
+    if excess == 0.0 or p.stribeck_velocity == 0.0:
+        return 0.0
+    return -2.0 * velocity / (p.stribeck_velocity * p.stribeck_velocity) * excess

@@ -1,0 +1,48 @@
+"""The winding heats up and its resistance grows."""
+
+import math
+
+from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.kernel import kernel
+
+EFFECT = Effect(
+    id="thermal_resistance",
+    stage="drive",
+    sentence="The motor gets warm under load and weaker with it.",
+    equation="R (1 + 0.0039 rise), heat_capacity d(rise)/dt = i^2 R - rise / thermal_resistance, "
+    "rise 0 at the first sample",
+    origin="copper, 0.0039 1/K at 20 degC; IEC 60028",
+    shows_in="grows over the recording with the current drawn",
+    record="long holding at high duty, then a pause",
+    parameters=(
+        Parameter(
+            "thermal_resistance",
+            "K/W",
+            0.0,
+            500.0,
+            (5.0, 60.0),
+            "winding to ambient; 0: no heating",
+        ),
+        Parameter("heat_capacity", "J/K", 0.001, 1000.0, (0.1, 5.0), "of the winding"),
+    ),
+    strength=("thermal_resistance",),
+)
+
+
+COPPER = 0.0039
+"""Temperature coefficient of the resistance of copper [1/K] (IEC 60028)."""
+
+
+@kernel
+def resistance(p, cold_resistance, rise):
+    """Armature resistance [ohm] at temperature `rise` [K]."""
+    return cold_resistance * (1.0 + COPPER * rise)
+
+
+@kernel
+def heated(p, rise, power, duration):
+    """Temperature rise [K] after `duration` [s] at constant `power` [W]."""
+    final = power * p.thermal_resistance
+    if p.heat_capacity == 0.0:
+        return final
+    return final + (rise - final) * math.exp(-duration / (p.thermal_resistance * p.heat_capacity))

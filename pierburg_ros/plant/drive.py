@@ -1,0 +1,64 @@
+"""From duty to motor torque: dead band, supply, winding, bridge. Equations (1) and (5) of the paper."""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.effects import pwm_deadband, supply_sag, thermal_resistance
+from pierburg_ros.kernel import kernel
+
+
+@kernel
+def switch(p, s, duty, supply, closed_bridge):
+    """Put `duty` in force: armature voltage = duty x supply; an open bridge carries no current at all."""
+    heats = p.thermal_resistance.thermal_resistance != 0.0
+    same = duty == s.duty and supply == s.supply and closed_bridge == s.closed_bridge
+    if same and s.serial == p.serial and not heats:
+        return
+    s.duty, s.supply, s.closed_bridge, s.serial = duty, supply, closed_bridge, p.serial
+    s.steady = False
+    if not closed_bridge:
+        s.voltage = s.drive = s.braking = s.current = 0.0
+        return
+    effective = pwm_deadband.effective(p.pwm_deadband, duty)
+    s.voltage = effective * supply
+    s.resistance = p.armature_resistance
+    if heats:
+        s.resistance = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.rise)
+    if p.supply_sag.source_resistance != 0.0:
+        s.resistance += supply_sag.resistance(p.supply_sag, effective)
+    constant = p.gear_ratio * p.torque_constant
+    s.drive = constant * s.voltage / s.resistance
+    s.braking = constant * constant / s.resistance
+
+
+@kernel
+def motor_torque(p, s, velocity):
+    """Motor torque at the shaft side of the gear [N.m], at motor-side `velocity` [rad/s]: k_g k_m i."""
+    if p.armature_inductance.inductance != 0.0:
+        return p.gear_ratio * p.torque_constant * s.current
+    return s.drive - s.braking * velocity
+
+
+@kernel
+def relaxed_current(p, s, duration):
+    """Current [A] after `duration` [s] of standstill, with inductance."""
+    if not s.closed_bridge:
+        return 0.0
+    final = s.voltage / s.resistance
+    return final + (s.current - final) * math.exp(-s.resistance * duration / p.armature_inductance.inductance)
+
+
+@kernel
+def warm(p, s, travel, change, duration):
+    """Heat the winding for `duration` [s] with the mean current, from the motor's `travel` [rad] and `change` [A].
+
+    Equation (5) of the paper, averaged: voltage = R i + inductance di/dt + k_g k_m w.
+    """
+    if not s.closed_bridge:
+        amperes = 0.0
+    else:
+        induced = p.gear_ratio * p.torque_constant * travel + p.armature_inductance.inductance * change
+        amperes = (s.voltage - induced / duration) / s.resistance
+    hot = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.rise)
+    s.rise = thermal_resistance.heated(p.thermal_resistance, s.rise, amperes * amperes * hot, duration)

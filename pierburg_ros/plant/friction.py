@@ -1,0 +1,60 @@
+"""Friction of a sliding or standing contact: its level, its damping, and what holds at rest.
+
+Karnopp form (equations (7) and (8) of the paper): a standing shaft stays exactly where it is until the torque
+on it exceeds the level at rest; a sliding one meets the level with the sign of its velocity.
+"""
+
+from __future__ import annotations
+
+from pierburg_ros.effects import (
+    direction_dependent_friction,
+    load_dependent_friction,
+    position_dependent_friction,
+    static_friction,
+    viscous_friction,
+)
+from pierburg_ros.kernel import kernel
+
+NOTHING = 1e-9
+"""Torque [N.m] that is no push: bristles have come to rest when nothing more than this drives them."""
+
+
+@kernel
+def damping(p, direction):
+    """Viscous friction [N.m.s/rad] in `direction` (+1 opens, -1 closes)."""
+    return viscous_friction.damping(p.viscous_friction) + direction_dependent_friction.damping(
+        p.direction_dependent_friction, direction
+    )
+
+
+@kernel
+def level(p, direction, velocity, angle, motor_torque):
+    """Friction level [N.m], and its derivatives with velocity, angle and motor torque."""
+    value = p.coulomb_friction + direction_dependent_friction.level(p.direction_dependent_friction, direction)
+    by_velocity = by_angle = by_torque = 0.0
+    if not p.plain:
+        if p.static_friction.breakaway_torque != 0.0:
+            excess = static_friction.excess(p.static_friction, p.coulomb_friction, velocity)
+            value += excess
+            by_velocity = static_friction.slope(p.static_friction, velocity, excess)
+        if p.load_dependent_friction.coefficient != 0.0:
+            value += load_dependent_friction.level(p.load_dependent_friction, motor_torque)
+            by_torque = p.load_dependent_friction.coefficient * (1.0 if motor_torque >= 0.0 else -1.0)
+        if p.position_dependent_friction.amplitude != 0.0:
+            spot = position_dependent_friction.level(p.position_dependent_friction, angle)
+            value += spot
+            by_angle = position_dependent_friction.slope(p.position_dependent_friction, angle, spot)
+    if value <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    return value, by_velocity, by_angle, by_torque
+
+
+@kernel
+def hold(p, share, direction, angle, motor_torque, bristle):
+    """Torque [N.m] that sets the standing contact moving in `direction`, of which it carries this `share`.
+
+    Bristles hold by leaning, so what they bear is part of the balance, and any push beyond it moves them.
+    """
+    if p.presliding.stiffness != 0.0:
+        return NOTHING + direction * share * p.presliding.stiffness * bristle
+    return share * level(p, direction, 0.0, angle, motor_torque)[0]

@@ -1,0 +1,111 @@
+"""The closed-form solution of one linear piece, x'' + damping x' + stiffness x = constant + ramp t.
+
+Everything the plant does between two events is such a piece, so its step length is set by events and by
+curvature, not by the fast pole (66 krad/s for the Pierburg valve).
+"""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.kernel import kernel
+
+STILL = 1e-9
+"""Swings of the velocity smaller than this [rad/s] are none."""
+JUST_TURNED = 1e-2
+"""A turn nearer than this [rad of the rotation] is the one that has just been passed."""
+SLOW = 1e-3
+"""Below this product of rate and step the power series is the more accurate form."""
+
+
+@kernel
+def responses(damping, stiffness, step):
+    """Impulse response S, its derivative, and its first three integrals, after `step` [s].
+
+    `damping` [1/s] and `stiffness` [1/s^2] are per inertia. S solves S'' + damping S' + stiffness S = 0 with
+    S(0) = 0, S'(0) = 1 (any textbook on linear differential equations).
+    """
+    if abs(damping) * step < SLOW and abs(stiffness) * step * step < SLOW:
+        return _by_series(damping, stiffness, step)
+    discriminant = 0.25 * damping * damping - stiffness
+    if discriminant * step * step > 1e-8:
+        return _by_real_roots(damping, stiffness, step, math.sqrt(discriminant))
+    return _by_rotation(damping, stiffness, step, max(math.sqrt(max(-discriminant, 0.0)), 1e-4 / step))
+
+
+@kernel
+def _by_series(damping, stiffness, step):
+    first = -damping
+    second = damping * damping - stiffness
+    third = -damping * (damping * damping - 2.0 * stiffness)
+    slope = 1.0 + step * (first + step * (second / 2.0 + step * third / 6.0))
+    impulse = step * (1.0 + step * (first / 2.0 + step * (second / 6.0 + step * third / 24.0)))
+    integral = step * step * (0.5 + step * (first / 6.0 + step * second / 24.0))
+    twice = step * step * step * (1.0 / 6.0 + step * (first / 24.0 + step * second / 120.0))
+    return slope, impulse, integral, twice, step**4 * (1.0 / 24.0 + step * first / 120.0)
+
+
+@kernel
+def _by_real_roots(damping, stiffness, step, half_gap):
+    if damping >= 0.0:
+        fast = -0.5 * damping - half_gap
+        slow = stiffness / fast
+    else:
+        slow = -0.5 * damping + half_gap
+        fast = stiffness / slow
+    scale = 1.0 / (slow - fast)
+    grown_slow, grown_fast = math.expm1(slow * step), math.expm1(fast * step)
+    slope = (slow * (grown_slow + 1.0) - fast * (grown_fast + 1.0)) * scale
+    impulse = (grown_slow - grown_fast) * scale
+    slow_1, fast_1 = _next_integral(slow, step, grown_slow, 1.0), _next_integral(fast, step, grown_fast, 1.0)
+    slow_2, fast_2 = _next_integral(slow, step, slow_1, 2.0), _next_integral(fast, step, fast_1, 2.0)
+    slow_3, fast_3 = _next_integral(slow, step, slow_2, 6.0), _next_integral(fast, step, fast_2, 6.0)
+    return slope, impulse, (slow_1 - fast_1) * scale, (slow_2 - fast_2) * scale, (slow_3 - fast_3) * scale
+
+
+@kernel
+def _next_integral(root, step, integral, factorial):
+    """Next repeated integral of exp(root t) - 1: (previous - step^n / n!) / root, n! = `factorial`, n = 1, 2, 3.
+
+    The first call is given expm1 itself, of which the integral over t of exp(root t) is expm1 / root.
+    """
+    reach = root * step
+    if factorial == 1.0:
+        return integral / root if abs(reach) > 1e-12 else step * (1.0 + 0.5 * reach)
+    if factorial == 2.0:
+        if abs(reach) < 1e-3:
+            return step * step * (0.5 + reach * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach / 120.0)))
+        return (integral - step) / root
+    if abs(reach) < 1e-2:
+        return step * step * step * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach * (1.0 / 120.0 + reach / 720.0)))
+    return (integral - 0.5 * step * step) / root
+
+
+@kernel
+def _by_rotation(damping, stiffness, step, frequency):
+    decay = math.exp(-0.5 * damping * step)
+    sine, cosine = math.sin(frequency * step), math.cos(frequency * step)
+    impulse = decay * sine / frequency
+    slope = decay * (cosine - 0.5 * damping * sine / frequency)
+    integral = (1.0 - slope - damping * impulse) / stiffness
+    twice = (step - impulse - damping * integral) / stiffness
+    return slope, impulse, integral, twice, (0.5 * step * step - integral - damping * twice) / stiffness
+
+
+@kernel
+def turning_time(damping, stiffness, acceleration, jerk):
+    """Time [s] to the next turn of the velocity, which starts with `acceleration` and `jerk`; infinite where none.
+
+    The acceleration itself solves S'' + damping S' + stiffness S = 0, so a rotating one is zero once in half a
+    period.
+    """
+    square = stiffness - 0.25 * damping * damping
+    if square <= 0.0:
+        return math.inf
+    frequency = math.sqrt(square)
+    if abs(acceleration) * frequency + abs(jerk) < STILL * square:
+        return math.inf
+    phase = math.atan2(-acceleration * frequency, jerk + 0.5 * damping * acceleration)
+    while phase <= JUST_TURNED:
+        phase += math.pi
+    return phase / frequency

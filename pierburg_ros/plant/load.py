@@ -1,0 +1,100 @@
+"""Everything that loads motor and shaft: cogging; spring, gravity, loads from outside, elastic stops, the residual."""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.effects import cogging_torque, external_load, nonlinear_spring, stop_compliance
+from pierburg_ros.kernel import kernel
+
+
+@kernel
+def ripple(p, motor_angle):
+    """Load torque of the motor itself [N.m] at its angle seen from the shaft [rad], and its derivative."""
+    if p.cogging_torque.amplitude == 0.0:
+        return 0.0, 0.0
+    torque = cogging_torque.torque(p.cogging_torque, p.gear_ratio, motor_angle)
+    return torque, cogging_torque.slope(p.cogging_torque, p.gear_ratio, motor_angle)
+
+
+@kernel
+def load(p, angle, velocity, time):
+    """Load torque of the shaft [N.m], positive closes, and its derivatives with angle, velocity and time.
+
+    Equation (4) of the paper, T_s = k_s angle + preload, and whatever effects add.
+    """
+    torque = p.spring_preload + p.spring_stiffness * angle
+    by_angle = p.spring_stiffness
+    if p.plain:
+        return torque, by_angle, 0.0, 0.0
+    by_velocity = 0.0
+    by_time = 0.0
+    if p.gravity_torque != 0.0:
+        torque += p.gravity_torque * math.sin(angle)
+        by_angle += p.gravity_torque * math.cos(angle)
+    if p.nonlinear_spring.cubic_stiffness != 0.0 or p.nonlinear_spring.knee_stiffness != 0.0:
+        torque += nonlinear_spring.torque(p.nonlinear_spring, angle)
+        by_angle += nonlinear_spring.slope(p.nonlinear_spring, angle)
+    if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
+        torque += external_load.torque(p.external_load, time)
+        by_time += external_load.rate(p.external_load, time)
+    if p.stop_compliance.stiffness != 0.0:
+        pushed, stiffness, damping = contact(p, angle, velocity)
+        torque += pushed
+        by_angle += stiffness
+        by_velocity += damping
+    if p.residual.angles > 0:
+        shape, slope_angle, slope_velocity = residual(p.residual, angle, velocity)
+        torque += shape
+        by_angle += slope_angle
+        by_velocity += slope_velocity
+    return torque, by_angle, by_velocity, by_time
+
+
+@kernel
+def contact(p, angle, velocity):
+    """Torque of the elastic stops [N.m], positive closes, with its stiffness and damping."""
+    stop = p.stop_compliance
+    if angle > p.upper_stop:
+        torque = stop_compliance.torque(stop, angle - p.upper_stop, velocity)
+    else:
+        torque = -stop_compliance.torque(stop, p.lower_stop - angle, -velocity)
+    if torque == 0.0:
+        return 0.0, 0.0, 0.0
+    return torque, stop.stiffness, stop.damping
+
+
+@kernel
+def residual(grid, angle, velocity):
+    """Residual torque [N.m], bilinear between its nodes and clamped at its edges, with both slopes."""
+    row, along = _cell(grid.angle, grid.angles, angle)
+    column, across = _cell(grid.velocity, grid.velocities, velocity)
+    below = grid.torque[row, column]
+    rise_angle = grid.torque[min(row + 1, grid.angles - 1), column] - below
+    rise_velocity = grid.torque[row, min(column + 1, grid.velocities - 1)] - below
+    corner = grid.torque[min(row + 1, grid.angles - 1), min(column + 1, grid.velocities - 1)]
+    twist = corner - below - rise_angle - rise_velocity
+    torque = below + along * rise_angle + across * rise_velocity + along * across * twist
+    slope_angle = _slope(grid.angle, grid.angles, row, angle, rise_angle + across * twist)
+    slope_velocity = _slope(grid.velocity, grid.velocities, column, velocity, rise_velocity + along * twist)
+    return torque, slope_angle, slope_velocity
+
+
+@kernel
+def _cell(nodes, count, value):
+    """Index of the node below `value` and the fraction of the way to the next, clamped at the ends."""
+    if count < 2 or value <= nodes[0]:
+        return 0, 0.0
+    if value >= nodes[count - 1]:
+        return count - 2, 1.0
+    index = 0
+    while value >= nodes[index + 1]:
+        index += 1
+    return index, (value - nodes[index]) / (nodes[index + 1] - nodes[index])
+
+
+@kernel
+def _slope(nodes, count, index, value, rise):
+    if count < 2 or value <= nodes[0] or value >= nodes[count - 1]:
+        return 0.0
+    return rise / (nodes[index + 1] - nodes[index])

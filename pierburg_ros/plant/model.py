@@ -1,0 +1,157 @@
+"""A model: an actuator, the values of its parameters, the effects that act, and a residual torque if any."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.errors import InputError
+from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
+
+
+@dataclass(frozen=True)
+class Model:
+    """Flat `values` by dotted name (`armature_resistance`, `backlash.gap`), complete: absent effects read 0."""
+
+    actuator: Actuator
+    values: dict[str, float]
+    residual_torque: Mapping[str, Any] | None = field(default=None, compare=False)
+
+    @staticmethod
+    def nominal(actuator: Actuator) -> Model:
+        """The actuator as described."""
+        values = {name: p.nominal for name, p in actuator.parameters.items()}
+        values.update({f"{effect.id}.{name}": 0.0 for effect in EFFECTS for name in effect.names})
+        for effect, numbers in actuator.effects.items():
+            values.update({f"{effect}.{name}": value for name, value in numbers.items()})
+        return Model(actuator, values)
+
+    def with_values(self, changes: Mapping[str, float]) -> Model:
+        """The model with some values changed; InputError where a name is unknown or a value not allowed."""
+        for name, value in changes.items():
+            self._check(name, value)
+        model = Model(self.actuator, {**self.values, **changes}, self.residual_torque)
+        model._check_pairs()
+        return model
+
+    def with_residual(self, residual_torque: Mapping[str, Any] | None) -> Model:
+        """The model with a residual torque: `angle` [rad], `velocity` [rad/s], `torque` [N.m] on their grid."""
+        if residual_torque is not None:
+            _check_residual(residual_torque)
+        return Model(self.actuator, self.values, residual_torque)
+
+    @property
+    def active_effects(self) -> tuple[str, ...]:
+        """Ids of the effects that act, in the order of the signal path."""
+        return tuple(e.id for e in EFFECTS if any(self.values[f"{e.id}.{n}"] != 0.0 for n in e.strength))
+
+    def range(self, name: str) -> tuple[float, float]:
+        """Accepted range of the parameter called `name`; InputError where there is none."""
+        if name in self.actuator.parameters:
+            parameter = self.actuator.parameters[name]
+            return parameter.minimum, parameter.maximum
+        if name not in self.values:
+            raise InputError(
+                f"There is no parameter {name} in actuator {self.actuator.name}; expected one of "
+                f"{', '.join(self.actuator.parameters)} or effect.parameter."
+            )
+        effect, own = name.split(".")
+        declared = EFFECT[effect].parameter(own)
+        return min(declared.minimum, 0.0), declared.maximum
+
+    def record(self) -> np.ndarray:
+        """The parameter record that the kernels read, shape (1,)."""
+        a = self.actuator
+        values = {**dict.fromkeys(BASE, 0.0), **self.values}
+        return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.residual_torque)
+
+    def _check(self, name: str, value: float) -> None:
+        minimum, maximum = self.range(name)
+        if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
+            raise InputError(f"{name} is {value!r}; expected a number.")
+        if not math.isfinite(value) or not minimum <= value <= maximum:
+            raise InputError(f"{name} is {value:g}; expected {minimum:g} to {maximum:g}.")
+        if "." in name:
+            effect, own = name.split(".")
+            choices = EFFECT[effect].parameter(own).choices
+            if choices and value != 0.0 and value not in choices:
+                expected = " or ".join(f"{c:g}" for c in choices)
+                raise InputError(f"{name} is {value:g}; expected {expected}.")
+
+    def _check_pairs(self) -> None:
+        value = self.values
+        breakaway = value["static_friction.breakaway_torque"]
+        if breakaway != 0.0 and breakaway < value["coulomb_friction"]:
+            raise InputError(
+                f"static_friction.breakaway_torque is {breakaway:g}; expected 0 (absent) or at least "
+                f"coulomb_friction, {value['coulomb_friction']:g}. Change both together."
+            )
+        source = value["supply_sag.source_resistance"]
+        if source != 0.0 and source >= value["armature_resistance"]:
+            raise InputError(
+                f"supply_sag.source_resistance is {source:g}; expected less than armature_resistance, "
+                f"{value['armature_resistance']:g}."
+            )
+
+    def as_mapping(self) -> dict[str, Any]:
+        """The model file's content: what differs from nominal, the effects that act, the residual torque."""
+        parameters = {
+            name: self.values[name] for name, p in self.actuator.parameters.items() if self.values[name] != p.nominal
+        }
+        effects = {
+            effect: {name: self.values[f"{effect}.{name}"] for name in EFFECT[effect].names}
+            for effect in {**self.actuator.effects, **dict.fromkeys(self.active_effects)}
+        }
+        content: dict[str, Any] = {"actuator": self.actuator.name, "parameters": parameters, "effects": effects}
+        if self.residual_torque is not None:
+            content["residual_torque"] = {
+                key: np.asarray(self.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")
+            }
+        return content
+
+    def write(self, path: str | Path) -> None:
+        """Write the model file (section 6 of the contract)."""
+        text = yaml.safe_dump(_plain(self.as_mapping()), sort_keys=False, default_flow_style=None)
+        Path(path).write_text(text, encoding="utf-8")
+
+    @staticmethod
+    def read(source: str | Path | Mapping[str, Any], actuator: Actuator | None = None) -> Model:
+        """Read a model file; InputError names the line of what cannot be used.
+
+        The file's `actuator` is a shipped name or a path; `actuator` overrides it.
+        """
+        from pierburg_ros.plant.model_file import read_model
+
+        return read_model(source, actuator)
+
+
+def _plain(value: Any) -> Any:
+    """`value` with NumPy numbers made Python's, as YAML wants them."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
+
+
+def _check_residual(residual: Mapping[str, Any]) -> None:
+    if set(residual) != {"angle", "velocity", "torque"}:
+        raise InputError(f"residual_torque has {', '.join(residual)}; expected angle, velocity and torque.")
+    angle, velocity = (np.asarray(residual[key], dtype=float) for key in ("angle", "velocity"))
+    torque = np.asarray(residual["torque"], dtype=float)
+    for name, axis in (("angle", angle), ("velocity", velocity)):
+        increasing = axis.ndim == 1 and 0 < axis.size <= RESIDUAL_NODES and bool(np.all(np.diff(axis) > 0))
+        if not increasing or not np.all(np.isfinite(axis)):
+            raise InputError(f"residual_torque.{name} is unusable; expected 1 to {RESIDUAL_NODES} increasing numbers.")
+    if torque.shape != (angle.size, velocity.size) or not np.all(np.isfinite(torque)):
+        raise InputError(
+            f"residual_torque.torque has shape {torque.shape}; expected {(angle.size, velocity.size)}, finite."
+        )

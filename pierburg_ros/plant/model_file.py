@@ -1,0 +1,107 @@
+"""Reads a model file (YAML) and names the line of whatever cannot be used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from pierburg_ros.actuators import Actuator, read_actuator
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
+from pierburg_ros.plant.model import Model
+
+SECTIONS = ("actuator", "parameters", "effects", "residual_torque")
+
+
+def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None = None) -> Model:
+    """The model in `source`, a path or the content of a model file, of `actuator` where given."""
+    if isinstance(source, Mapping):
+        return _model(dict(source), actuator, "model", lambda *_: "")
+    path = Path(source)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        raise InputError(f"{path} cannot be read; expected a model file (YAML). Check the path.") from None
+    try:
+        content, tree = yaml.safe_load(text), yaml.compose(text)
+    except yaml.YAMLError as error:
+        line = getattr(getattr(error, "problem_mark", None), "line", 0) + 1
+        raise InputError(f"{path.name} line {line} is not YAML; expected a model file.") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path.name} holds no model; expected {', '.join(SECTIONS)}.")
+    return _model(content, actuator, path.name, lambda *keys: _line(tree, keys))
+
+
+def _line(node: Any, keys: tuple[str, ...]) -> str:
+    """Where the value under nested `keys` stands, as ` line 7`."""
+    for key in keys:
+        if not isinstance(node, yaml.MappingNode):
+            break
+        for name, value in node.value:
+            if name.value == key:
+                node = value
+                break
+    return f" line {node.start_mark.line + 1}" if node is not None else ""
+
+
+def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line: Any) -> Model:
+    for key in content:
+        if key not in SECTIONS:
+            raise InputError(f"{label}{line(key)}: unknown {key}; expected {', '.join(SECTIONS)}.")
+    if actuator is None:
+        if "actuator" not in content:
+            raise InputError(f"{label} names no actuator; expected for example `actuator: pierburg`.")
+        actuator = read_actuator(content["actuator"])
+    model = Model.nominal(actuator)
+    changes: dict[str, float] = {}
+    for name, value in _section(content, "parameters", label, line).items():
+        _try(model, {name: value}, f"{label}{line('parameters', name)}", base_only=True)
+        changes[name] = value
+    for effect, numbers in _section(content, "effects", label, line).items():
+        changes.update(_effect(model, effect, numbers, label, line))
+    try:
+        model = model.with_values(changes).with_residual(content.get("residual_torque"))
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    return model
+
+
+def _section(content: dict[str, Any], key: str, label: str, line: Any) -> dict[str, Any]:
+    section = content.get(key) or {}
+    if not isinstance(section, dict):
+        raise InputError(f"{label}{line(key)}: {key} is {section!r}; expected names with values.")
+    return section
+
+
+def _effect(model: Model, effect: str, numbers: Any, label: str, line: Any) -> dict[str, float]:
+    place = f"{label}{line('effects', effect)}"
+    if effect not in EFFECT:
+        raise InputError(f"{place}: unknown effect {effect}; expected one of {', '.join(EFFECT)}.")
+    if not isinstance(numbers, dict):
+        raise InputError(f"{place}: {effect} is {numbers!r}; expected its parameters with values.")
+    declared = EFFECT[effect]
+    changes: dict[str, float] = {}
+    for name, value in numbers.items():
+        if name not in declared.names:
+            expected = ", ".join(declared.names)
+            raise InputError(f"{place}: {effect} has no parameter {name}; expected {expected}.")
+        _try(model, {f"{effect}.{name}": value}, f"{label}{line('effects', effect, name)}")
+        changes[f"{effect}.{name}"] = value
+    if any(changes.get(f"{effect}.{name}", 0.0) != 0.0 for name in declared.strength):
+        for parameter in declared.parameters:
+            if parameter.name not in numbers and parameter.default is None:
+                raise InputError(f"{place}: {effect} lacks {parameter.name} [{parameter.unit}]; give a value.")
+    return changes
+
+
+def _try(model: Model, change: dict[str, Any], place: str, base_only: bool = False) -> None:
+    name = next(iter(change))
+    try:
+        if base_only and "." in str(name):
+            raise InputError(f"{name} belongs under effects.")
+        model._check(name, change[name])
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None

@@ -1,0 +1,105 @@
+"""The signal path of the plant, top to bottom: duty in, delay, drive, mechanics, heat, sensor."""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant import drive, elastic_gear, play_gear, rigid_gear, sensor, steady
+from pierburg_ros.plant.state import QUEUE
+
+LONGEST = 0.002
+"""Longest stretch [s] over which the winding keeps its resistance, and the shaft its velocity for the sensor's lag."""
+EVENTS = 20_000
+"""More events than this in one interval mean that a parameter set cannot be simulated."""
+
+
+@kernel
+def advance(p, s, duty, supply_voltage, closed_bridge, duration):
+    """Let `duty` act for `duration` [s]; `supply_voltage` [V] not a number means the nominal one.
+
+    Changes the state record `s`. A state that is not finite afterwards says that the parameters cannot be
+    simulated; validate before.
+    """
+    supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
+    if steady.goes_on(p, s, duty, supply, closed_bridge, duration):
+        s.time += duration
+    else:
+        _proceed(p, s, duty, supply, closed_bridge, duration)
+
+
+@kernel
+def _proceed(p, s, duty, supply, closed_bridge, duration):
+    """Let `duty` act at once, or late."""
+    if p.input_delay.delay == 0.0 and s.waiting == 0:
+        _act(p, s, duty, supply, closed_bridge, duration)
+    else:
+        _act_late(p, s, duty, supply, closed_bridge, duration)
+
+
+@kernel
+def _act_late(p, s, duty, supply, closed_bridge, duration):
+    """Put `duty` under way and let those that arrive act, for `duration` [s]."""
+    _enqueue(s, s.time + p.input_delay.delay, duty)
+    end = s.time + duration
+    in_force = s.duty
+    while s.time < end:
+        while s.waiting > 0 and s.queue_time[s.first] <= s.time:
+            in_force = s.queue_duty[s.first]
+            s.first = (s.first + 1) % QUEUE
+            s.waiting -= 1
+        until = min(end, s.queue_time[s.first]) if s.waiting > 0 else end
+        _act(p, s, in_force, supply, closed_bridge, until - s.time)
+        s.time = until
+
+
+@kernel
+def _enqueue(s, time, duty):
+    """Put a change of duty under way; in a full queue the newest is replaced."""
+    newest = s.queue_duty[(s.first + s.waiting - 1) % QUEUE] if s.waiting > 0 else s.duty
+    if duty == newest:
+        return
+    if s.waiting < QUEUE:
+        s.waiting += 1
+    last = (s.first + s.waiting - 1) % QUEUE
+    s.queue_time[last], s.queue_duty[last] = time, duty
+
+
+@kernel
+def _act(p, s, duty, supply, closed_bridge, duration):
+    """One duty, in force at the motor, for `duration` [s]."""
+    if math.isnan(s.angle):
+        s.time += duration
+        return
+    stretches = 1
+    if p.sensor_moves or p.thermal_resistance.thermal_resistance != 0.0:
+        stretches = max(math.ceil(duration / LONGEST - 1e-6), 1)
+    for _ in range(stretches):
+        drive.switch(p, s, duty, supply, closed_bridge)
+        _mechanics(p, s, duration / stretches)
+
+
+@kernel
+def _mechanics(p, s, duration):
+    """Move motor and shaft for `duration` [s], event by event."""
+    end = s.time + duration
+    remaining = duration
+    heats = p.thermal_resistance.thermal_resistance != 0.0
+    for _ in range(EVENTS):
+        start, amperes = s.motor_angle, s.current
+        if p.gear_compliance.stiffness != 0.0:
+            used = elastic_gear.move(p, s, remaining)
+        elif p.backlash.gap != 0.0:
+            used = play_gear.move(p, s, remaining)
+        else:
+            used = rigid_gear.move(p, s, remaining)
+        if p.sensor_moves:
+            sensor.follow(p, s, used)
+        if heats and used > 0.0:
+            drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
+        remaining -= used
+        if not remaining > 0.0:
+            s.time = end
+            return
+    s.angle = s.velocity = math.nan
+    s.time = end

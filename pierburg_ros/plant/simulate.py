@@ -1,0 +1,161 @@
+"""Whole runs: one parameter set, or many in parallel, over the same inputs."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.sensor import measured, quantised
+from pierburg_ros.plant.signal_path import advance
+from pierburg_ros.plant.state import new_state
+
+Signal = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What drives the plant: each row holds from its time until the next one.
+
+    time [s], shape (changes,), increasing; duty in [-1, 1]; supply_voltage [V] or None for the model's;
+    enabled, or None for always. Before the first row duty is 0.
+    """
+
+    time: Signal
+    duty: Signal
+    supply_voltage: Signal | None = None
+    enabled: NDArray[np.bool_] | None = None
+
+    def __post_init__(self) -> None:
+        time = np.ascontiguousarray(self.time, dtype=float)
+        object.__setattr__(self, "time", time)
+        for name, kind in (("duty", float), ("supply_voltage", float), ("enabled", bool)):
+            values = getattr(self, name)
+            if values is not None:
+                object.__setattr__(self, name, np.ascontiguousarray(values, dtype=kind))
+                if np.shape(values) != time.shape:
+                    raise InputError(
+                        f"The input has {time.size} times and {np.size(values)} values of {name}; "
+                        "expected one each. Give arrays of the same length."
+                    )
+        if not np.all(np.isfinite(self.duty)):
+            raise InputError("The duty is not finite throughout; expected numbers in [-1, 1]. Remove what is missing.")
+        if time.size == 0 or not np.all(np.isfinite(time)) or not np.all(np.diff(time) > 0):
+            raise InputError("The input times are empty or do not increase; expected increasing times. Sort them.")
+
+
+def simulate(
+    model: Model,
+    inputs: Inputs,
+    sample_times: ArrayLike,
+    initial_angle: float = 0.0,
+    initial_velocity: float = 0.0,
+) -> Signal:
+    """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
+
+    No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s].
+    Not a number from where a parameter set cannot be simulated.
+    """
+    times = _increasing(sample_times)
+    output = np.empty(times.size)
+    _run_into(output, model, inputs, times, initial_angle, initial_velocity)
+    return output
+
+
+def simulate_switched(
+    model: Model,
+    after: Model,
+    switch_time: float,
+    inputs: Inputs,
+    sample_times: ArrayLike,
+    initial_angle: float = 0.0,
+    initial_velocity: float = 0.0,
+) -> Signal:
+    """`simulate` of `model`, with `after` taking over the running state at `switch_time` [s]."""
+    times = _increasing(sample_times)
+    output = np.empty(times.size)
+    split = int(np.searchsorted(times, switch_time))
+    state = new_state(model.record(), initial_angle, initial_velocity)
+    for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
+        if last > first:
+            _continue_into(output[first:last], part, state, inputs, times[first:last])
+    return output
+
+
+def simulate_many(
+    models: Sequence[Model],
+    inputs: Inputs,
+    sample_times: ArrayLike,
+    initial_angle: float = 0.0,
+    initial_velocity: float = 0.0,
+    threads: int | None = None,
+) -> Signal:
+    """`simulate` for each of `models`, shape (sets, samples), over `threads` cores (all by default)."""
+    times = _increasing(sample_times)
+    output = np.empty((len(models), times.size))
+
+    def run(index: int) -> None:
+        _run_into(output[index], models[index], inputs, times, initial_angle, initial_velocity)
+
+    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+        list(pool.map(run, range(len(models))))
+    return output
+
+
+def _run_into(
+    output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
+) -> None:
+    state = new_state(model.record(), initial_angle, initial_velocity)
+    _continue_into(output, model, state, inputs, times)
+
+
+def _continue_into(output: Signal, model: Model, state: np.ndarray, inputs: Inputs, times: Signal) -> None:
+    supply = inputs.supply_voltage if inputs.supply_voltage is not None else _NOTHING
+    enabled = inputs.enabled if inputs.enabled is not None else _ALWAYS
+    run(model.record()[0], state[0], inputs.time, inputs.duty, supply, enabled, times, output)
+
+
+def _increasing(sample_times: ArrayLike) -> Signal:
+    times = np.ascontiguousarray(sample_times, dtype=float)
+    if times.ndim != 1 or times.size == 0 or not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0):
+        raise InputError("The sample times are empty or do not increase; expected increasing times. Sort them.")
+    return times
+
+
+_NOTHING = np.empty(0)
+_ALWAYS = np.empty(0, dtype=bool)
+
+
+@kernel
+def run(p, s, input_times, duty, supply_voltage, enabled, sample_times, output):
+    """Sample the plant at `sample_times` [s] into `output` while the inputs drive it; NaN from where it fails."""
+    index = -1
+    changes = input_times.size
+    now = sample_times[0]
+    while index + 1 < changes and input_times[index + 1] <= now:
+        index += 1
+    for sample in range(sample_times.size):
+        goal = sample_times[sample]
+        while now < goal:
+            until = goal
+            if index + 1 < changes and input_times[index + 1] < goal:
+                until = input_times[index + 1]
+            in_force = duty[index] if index >= 0 else 0.0
+            supply = supply_voltage[index] if supply_voltage.size > 0 and index >= 0 else np.nan
+            closed = enabled[index] if enabled.size > 0 and index >= 0 else True
+            advance(p, s, in_force, supply, closed, until - now)
+            now = until
+            while index + 1 < changes and input_times[index + 1] <= now:
+                index += 1
+        if not math.isfinite(s.angle):
+            output[sample:] = np.nan
+            return
+        output[sample] = quantised(p, measured(p, s))

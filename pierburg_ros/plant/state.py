@@ -1,0 +1,101 @@
+"""The state record of one simulated actuator, and how it starts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.friction import level
+
+QUEUE = 1024
+"""Duty changes that may be under way at once when the input is delayed."""
+
+PIECE = np.dtype(
+    [
+        ("order", np.int64),  # 2, or 3 behind an inductance; 0: none yet
+        ("damping", np.float64),  # coefficients, see linear_piece and third_order
+        ("stiffness", np.float64),
+        ("pull", np.float64),
+        ("step", np.float64),  # s
+        ("slope", np.float64),  # responses after `step`
+        ("impulse", np.float64),
+        ("integral", np.float64),
+        ("twice", np.float64),
+        ("thrice", np.float64),
+    ],
+    align=True,
+)
+
+STATE = np.dtype(
+    [
+        ("time", np.float64),  # s since the first sample
+        ("angle", np.float64),  # rad, of the shaft
+        ("velocity", np.float64),  # rad/s, of the shaft
+        ("direction", np.float64),  # +1 opening, -1 closing, 0 held: of the shaft
+        ("motor_angle", np.float64),  # rad, of the motor side seen from the shaft
+        ("motor_velocity", np.float64),  # rad/s
+        ("motor_direction", np.float64),
+        ("flank", np.int64),  # touching: +1 the opening one, -1 the closing one, 0 none
+        ("current", np.float64),  # A
+        ("bristle", np.float64),  # rad, of the friction contact, at the shaft where the teeth have parted
+        ("motor_bristle", np.float64),  # rad
+        ("rise", np.float64),  # K, of the winding
+        ("magnet", np.float64),  # rad, behind the play of the sensor
+        ("lagged", np.float64),  # rad, behind the lag of the sensor
+        ("followed", np.float64),  # rad, of the shaft when the sensor last followed it
+        ("duty", np.float64),  # in force at the motor, before the dead band
+        ("supply", np.float64),  # V
+        ("closed_bridge", np.bool_),
+        ("serial", np.int64),  # of the parameters last used
+        ("steady", np.bool_),  # the last step can be repeated: held, or one linear piece
+        ("constant", np.float64),  # rad/s^2, of that piece
+        ("voltage", np.float64),  # V, applied to armature and source
+        ("resistance", np.float64),  # ohm, of armature and source
+        ("drive", np.float64),  # N.m, motor torque at rest, at the shaft
+        ("braking", np.float64),  # N.m.s/rad, by the back-EMF
+        ("step", np.float64),  # s, internal step that was last accepted
+        ("piece", PIECE),  # the linear piece last computed
+        ("waiting", np.int64),  # duty changes under way
+        ("first", np.int64),
+        ("queue_time", np.float64, (QUEUE,)),  # s
+        ("queue_duty", np.float64, (QUEUE,)),
+    ],
+    align=True,
+)
+
+
+def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> np.ndarray:
+    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current, cold."""
+    state = np.zeros(1, STATE)
+    place(record[0], state[0], angle, velocity)
+    return state
+
+
+@kernel
+def place(p, s, angle, velocity):
+    """Put the actuator at `angle` [rad] with `velocity` [rad/s], transmission and sensor relaxed, cold.
+
+    On the lower stop the bristles of the friction contact lean as closing onto the stop has left them.
+    """
+    if p.stop_compliance.stiffness == 0.0:
+        angle = min(max(angle, p.lower_stop), p.upper_stop)
+    s.time = 0.0
+    s.angle = s.motor_angle = s.magnet = s.lagged = s.followed = angle
+    s.velocity = s.motor_velocity = velocity
+    s.direction = s.motor_direction = np.sign(velocity)
+    s.flank = 1
+    s.current = s.bristle = s.rise = s.duty = 0.0
+    s.supply = np.nan
+    s.closed_bridge = True
+    s.serial = 0
+    s.steady = False
+    s.voltage = s.drive = 0.0
+    s.resistance = s.braking = 0.0
+    s.step = 1.0
+    s.piece.order = 0
+    s.waiting = s.first = 0
+    if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
+        s.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
+    s.motor_bristle = s.bristle

@@ -1,0 +1,64 @@
+"""The catalogue is the contract's: ids, names and units, and declarations that hold together."""
+
+from __future__ import annotations
+
+import pytest
+
+from pierburg_ros.effects import EFFECT, EFFECTS, Effect
+
+CATALOGUE = {
+    "viscous_friction": {"coefficient": "N.m.s/rad"},
+    "static_friction": {"breakaway_torque": "N.m", "stribeck_velocity": "rad/s"},
+    "presliding": {"stiffness": "N.m/rad", "damping": "N.m.s/rad"},
+    "load_dependent_friction": {"coefficient": "1"},
+    "direction_dependent_friction": {"viscous_difference": "N.m.s/rad", "coulomb_difference": "N.m"},
+    "position_dependent_friction": {"amplitude": "N.m", "center": "rad", "width": "rad"},
+    "backlash": {"gap": "rad", "motor_friction_share": "1"},
+    "gear_compliance": {"stiffness": "N.m/rad", "damping": "N.m.s/rad"},
+    "cogging_torque": {"amplitude": "N.m", "periods_per_motor_revolution": "1", "phase": "rad"},
+    "nonlinear_spring": {"cubic_stiffness": "N.m/rad^3", "knee_stiffness": "N.m/rad", "knee_angle": "rad"},
+    "stop_compliance": {"stiffness": "N.m/rad", "damping": "N.m.s/rad"},
+    "external_load": {
+        "torque": "N.m",
+        "amplitude": "N.m",
+        "frequency": "Hz",
+        "phase": "rad",
+        "start": "s",
+        "end": "s",
+    },
+    "thermal_resistance": {"thermal_resistance": "K/W", "heat_capacity": "J/K"},
+    "supply_sag": {"source_resistance": "ohm"},
+    "pwm_deadband": {"width": "1"},
+    "armature_inductance": {"inductance": "H"},
+    "input_delay": {"delay": "s"},
+    "sensor_lag": {"time_constant": "s"},
+    "sensor_nonlinearity": {"amplitude": "1", "half_waves": "1"},
+    "sensor_hysteresis": {"width": "rad"},
+    "sensor_quantization": {"step": "V"},
+}
+"""Section 7 of the interface contract: published ids keep their meaning."""
+
+
+def test_published_effects_keep_their_names_and_units() -> None:
+    declared = {effect.id: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
+    assert {name: declared[name] for name in CATALOGUE} == CATALOGUE
+
+
+def test_ids_are_unique() -> None:
+    assert len(EFFECT) == len(EFFECTS)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
+def test_declaration_is_complete(effect: Effect) -> None:
+    texts = (effect.sentence, effect.equation, effect.origin, effect.shows_in, effect.record)
+    assert all(text.strip() for text in texts)
+    assert effect.sentence.endswith(".")
+    assert set(effect.strength) <= set(effect.names) and effect.strength[0] == effect.names[0]
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
+def test_plausible_ranges_lie_within_the_accepted_ones(effect: Effect) -> None:
+    for parameter in effect.parameters:
+        low, high = parameter.plausible
+        assert parameter.minimum <= low <= high <= parameter.maximum, parameter.name
+        assert set(parameter.choices) <= {low, high}, parameter.name
