@@ -1,0 +1,123 @@
+"""A recording: what was measured and what drove it, on one clock."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.errors import InputError
+
+Samples = NDArray[np.float64]
+UNITS = {"hall_voltage": "V", "position": "rad"}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Values that each hold from their time [s] until the next one's; both of shape (changes,)."""
+
+    time: Samples
+    values: Samples
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
+        object.__setattr__(self, "values", np.asarray(self.values, dtype=np.float64))
+        check_signal("a channel", self.time, self.values)
+
+    def at(self, time: Samples, before: float | None = None) -> Samples:
+        """Values in force at `time` [s]; earlier than the first one: `before`, or else the first value."""
+        place = np.searchsorted(self.time, time, side="right") - 1
+        first = self.values[0] if before is None else before
+        return np.where(place < 0, first, self.values[np.maximum(place, 0)])
+
+    def select(self, start: float, end: float) -> Channel | None:
+        """The part that acts in [start, end], its time counted from `start` [s]; None where nothing does."""
+        first = max(int(np.searchsorted(self.time, start, side="right")) - 1, 0)
+        last = int(np.searchsorted(self.time, end, side="right"))
+        return Channel(self.time[first:last] - start, self.values[first:last]) if last > first else None
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Measured samples of the shaft and the signals that acted on it.
+
+    `time` [s] counts from the first measured sample, shape (samples,); `measured` is Hall voltage [V] or
+    position [rad]. The channels are signed duty [1], supply voltage [V], temperature [degC], bridge enabled
+    [0 or 1] and setpoints [rad]; what was recorded before the first sample has a negative time. `time_source`
+    says which clock the times come from.
+    """
+
+    name: str
+    quantity: str
+    time: Samples
+    measured: Samples
+    duty: Channel
+    supply_voltage: Channel | None = None
+    temperature: Channel | None = None
+    enabled: Channel | None = None
+    setpoints: Channel | None = None
+    time_source: str = "stamp"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
+        object.__setattr__(self, "measured", np.asarray(self.measured, dtype=np.float64))
+        if self.quantity not in UNITS:
+            raise InputError(f"{self.name}: found quantity {self.quantity!r}, expected one of {', '.join(UNITS)}.")
+        check_signal(f"{self.name}: {self.quantity}", self.time, self.measured)
+        if self.time.size < 2 or self.time[-1] <= 0:
+            raise InputError(
+                f"{self.name} spans no time ({self.time.size} samples of {self.quantity}), expected two"
+                " samples or more at different times. Record longer."
+            )
+        largest = float(np.max(np.abs(self.duty.values)))
+        if largest > 1.0 + 1e-9:
+            raise InputError(
+                f"{self.name}: found a duty of magnitude {largest:g}, expected a fraction within [-1, 1]."
+                " Divide percentages by 100, and record the duty that was applied."
+            )
+
+    @property
+    def unit(self) -> str:
+        """Unit of the measured quantity, V or rad."""
+        return UNITS[self.quantity]
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last measured sample [s]."""
+        return float(self.time[-1])
+
+    def select(self, start: float, end: float) -> Recording:
+        """The samples within [start, end] [s] and what acts on them; times count from the first of them."""
+        inside = (self.time >= start) & (self.time <= end)
+        if np.count_nonzero(inside) < 2:
+            raise InputError(f"{self.name} has no two samples from {start:g} to {end:g} s. Choose a longer window.")
+        origin, last = self.time[inside][0], self.time[inside][-1]
+        duty = self.duty.select(origin, last) or Channel(np.zeros(1), np.zeros(1))
+        others = {
+            role: channel.select(origin, last)
+            for role in ("supply_voltage", "temperature", "enabled", "setpoints")
+            if (channel := getattr(self, role)) is not None
+        }
+        time, measured = self.time[inside] - origin, self.measured[inside]
+        return replace(self, time=time, measured=measured, duty=duty, **others)
+
+
+def check_signal(what: str, time: Samples, values: Samples) -> None:
+    """Refuse a signal that is empty, not finite, of unequal lengths, or whose time runs backwards."""
+    if time.ndim != 1 or time.shape != values.shape or time.size == 0:
+        raise InputError(f"{what} has {time.size} times and {values.size} values, expected equally many, one or more.")
+    bad = np.flatnonzero(~(np.isfinite(time) & np.isfinite(values)))
+    if bad.size:
+        raise InputError(
+            f"{what} has samples that are NaN or infinite ({bad.size} of {time.size}, first the sample at"
+            f" {time[bad[0]]:.3f} s), expected finite numbers. Cut or repair the recording there."
+        )
+    backwards = np.flatnonzero(np.diff(time) < 0)
+    if backwards.size:
+        place = backwards[0]
+        raise InputError(
+            f"{what} has a clock running backwards at {time[place]:.3f} s (by"
+            f" {time[place] - time[place + 1]:.3g} s), expected times that never decrease."
+            " Cut the recording there."
+        )

@@ -1,0 +1,92 @@
+"""Which topic of a recording plays which role: by last name under any namespace, or as a person names it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording.cdr import BOOL, CLOCK, FLOAT64, JOINT_STATE
+from pierburg_ros.recording.messages import Bag, Messages
+
+ROLES = {
+    "duty": FLOAT64,
+    "applied_duty": FLOAT64,
+    "hall_voltage": FLOAT64,
+    "joint_states": JOINT_STATE,
+    "supply_voltage": FLOAT64,
+    "temperature": FLOAT64,
+    "enabled": BOOL,
+    "setpoints": FLOAT64,
+    "clock": CLOCK,
+}
+"""Type of the topic of each role; a recording is read through these and nothing else."""
+
+
+def last_name(topic: str) -> str:
+    """`/bench/hall_voltage` -> `hall_voltage`."""
+    return topic.rsplit("/", 1)[-1]
+
+
+def namespace(topic: str) -> str:
+    """`/bench/hall_voltage` -> `/bench`."""
+    return topic.rpartition("/")[0]
+
+
+def check_names(named: Mapping[str, str], known: Mapping[str, str]) -> None:
+    """Refuse a name given for a role that does not exist."""
+    unknown = sorted(set(named) - set(known))
+    if unknown:
+        raise InputError(
+            f"--topic found the unknown signal {', '.join(unknown)}, expected one of {', '.join(known)}."
+            " Write --topic duty=/bench/pwm."
+        )
+
+
+@dataclass(frozen=True)
+class Cast:
+    """Finds the messages of a role in `bag`; `named` maps roles to topics that a person chose."""
+
+    bag: Bag
+    named: Mapping[str, str] = field(default_factory=dict)
+
+    def find(self, role: str) -> Messages | None:
+        """The messages of `role`, or None where there are none."""
+        topic = self.topic(role)
+        if topic is None or not self.bag.data[topic]:
+            return None
+        if self.bag.types[topic] != ROLES[role]:
+            raise InputError(
+                f"{self.bag.name}: {topic} is a {self.bag.types[topic]}, expected {ROLES[role]}."
+                f" Name another with --topic {role}=/your/topic."
+            )
+        return self.bag.messages(topic)
+
+    def topic(self, role: str) -> str | None:
+        """The topic of `role`: the named one, else the one with messages and that last name."""
+        if role in self.named:
+            return self.named_topic(role)
+        candidates = [topic for topic in self.bag.types if last_name(topic) == role]
+        candidates = [topic for topic in candidates if self.bag.data[topic]] or candidates[:1]
+        chosen = {namespace(topic) for topic in self.named.values()}
+        if len(candidates) > 1:
+            candidates = [topic for topic in candidates if namespace(topic) in chosen] or candidates
+        if len(candidates) > 1:
+            raise InputError(
+                f"{self.bag.name} has {len(candidates)} topics for {role} ({', '.join(sorted(candidates))}),"
+                f" expected one. Choose with --topic {role}={sorted(candidates)[0]}."
+            )
+        return candidates[0] if candidates else None
+
+    def named_topic(self, role: str) -> str:
+        """The topic that a person named for `role`."""
+        topic = self.named[role]
+        if topic not in self.bag.types:
+            raise InputError(
+                f"{self.bag.name} has no topic {topic} for {role} (found: {self.listed()}). Name one of those."
+            )
+        return topic
+
+    def listed(self) -> str:
+        """Every topic of the recording, for a message to a person."""
+        return ", ".join(sorted(self.bag.types)) or "no topics"

@@ -1,0 +1,114 @@
+"""Writes signals to MCAP in the form that ROS 2 tools open; the file is whole or not there."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+import yaml
+from numpy.typing import ArrayLike, NDArray
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording import cdr
+from pierburg_ros.recording.mcap_writer import TYPES, McapWriter, bag_metadata
+from pierburg_ros.recording.messages import Integers
+from pierburg_ros.recording.recording import UNITS, Channel
+
+Signal = tuple[str, ArrayLike, ArrayLike]
+"""Message type, times [s] and values; values of sensor_msgs/msg/JointState are shaft positions [rad]."""
+
+
+def write_recording(path: str | Path, signals: Mapping[str, Signal], *, as_directory: bool = False) -> None:
+    """Write `signals`, by topic, to the MCAP file `path`, or as a rosbag2 directory of that name.
+
+    The earliest time of all becomes 0 if it is negative. Log and publish time are the signal's time; messages
+    of one time stand in the order of `signals`; sequence numbers count each topic's messages.
+    """
+    path = Path(path)
+    if as_directory and path.exists():
+        raise InputError(f"{path} exists, expected a new rosbag2 directory. Choose another name.")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
+    try:
+        file = folder / (f"{path.name}_0.mcap" if as_directory else path.name)
+        with file.open("wb") as stream, McapWriter(stream) as writer:
+            for topic, (type_name, _, _) in signals.items():
+                writer.declare(topic, type_name)
+            for message in in_order(signals):
+                writer.write(*message)
+        if as_directory:
+            (folder / "metadata.yaml").write_text(yaml.safe_dump(bag_metadata({file.name: writer}), sort_keys=False))
+            folder.chmod(0o755)
+        os.replace(folder if as_directory else file, path)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def write_simulated(
+    path: str | Path,
+    time: ArrayLike,
+    duty: ArrayLike | Channel,
+    measured: ArrayLike,
+    setpoints: Channel | None = None,
+    quantity: str = "hall_voltage",
+) -> None:
+    """Write a simulated run to the MCAP file `path`.
+
+    `measured` is Hall voltage [V] or position [rad] at `time` [s]; `duty` [1] has one value for each time, in
+    force until the next, or is a channel with times of its own; `setpoints` [rad].
+    """
+    if quantity not in UNITS:
+        raise InputError(f"found quantity {quantity!r}, expected one of {', '.join(UNITS)}.")
+    topic, kind = ("/hall_voltage", cdr.FLOAT64) if quantity == "hall_voltage" else ("/joint_states", cdr.JOINT_STATE)
+    inputs = duty if isinstance(duty, Channel) else Channel(np.asarray(time), np.asarray(duty))
+    signals: dict[str, Signal] = (
+        {} if setpoints is None else {"/setpoints": (cdr.FLOAT64, setpoints.time, setpoints.values)}
+    )
+    signals[topic] = (kind, time, measured)
+    signals["/duty"] = (cdr.FLOAT64, inputs.time, inputs.values)
+    write_recording(path, signals)
+
+
+def in_order(signals: Mapping[str, Signal]) -> Iterator[tuple[str, bytes, int, int, int]]:
+    """Topic, data, log time [ns], publish time [ns] and sequence number of every message, by time."""
+    seconds = [np.asarray(time, np.float64) for _, time, _ in signals.values()]
+    earliest = min((float(np.min(time)) for time in seconds if time.size), default=0.0)
+    stamps = [np.round((time - min(earliest, 0.0)) * 1e9).astype(np.int64) for time in seconds]
+    encoded = [
+        encode(kind, when, np.asarray(values, np.float64))
+        for when, (kind, _, values) in zip(stamps, signals.values(), strict=True)
+    ]
+    topics = list(signals)
+    source = np.repeat(np.arange(len(topics)), [when.size for when in stamps])
+    place = np.concatenate([np.arange(when.size) for when in stamps])
+    for row in np.lexsort((source, np.concatenate(stamps))).tolist():
+        topic, number = int(source[row]), int(place[row])
+        when = int(stamps[topic][number])
+        yield topics[topic], encoded[topic][number], when, when, number
+
+
+def encode(type_name: str, stamps: Integers, values: NDArray[np.float64]) -> list[bytes]:
+    """One CDR message for each value."""
+    if type_name == cdr.FLOAT64:
+        return cdr.encode_float64(values)
+    if type_name == cdr.BOOL:
+        return cdr.encode_bool(values)
+    if type_name == cdr.JOINT_STATE:
+        return [joint_state(when, value) for when, value in zip(stamps.tolist(), values, strict=True)]
+    raise InputError(f"found message type {type_name}, expected {cdr.FLOAT64}, {cdr.BOOL} or {cdr.JOINT_STATE}.")
+
+
+def joint_state(stamp: int, position: float) -> bytes:
+    """One sensor_msgs/JointState of the shaft: `stamp` [ns], `position` [rad]."""
+    time, header, message = (
+        TYPES.types[name] for name in ("builtin_interfaces/msg/Time", "std_msgs/msg/Header", cdr.JOINT_STATE)
+    )
+    stamped = header(time(stamp // 10**9, stamp % 10**9), "")
+    nothing = np.zeros(0)
+    return bytes(
+        TYPES.serialize_cdr(message(stamped, [cdr.SHAFT], np.array([position]), nothing, nothing), cdr.JOINT_STATE)
+    )
