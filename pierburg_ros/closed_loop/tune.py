@@ -1,0 +1,94 @@
+"""Gains and sets of a controller for a stated goal, over the set of plants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.closed_loop.course import STEPS, Course
+from pierburg_ros.closed_loop.designs import Design
+from pierburg_ros.closed_loop.goal import QUANTITIES, Goal, Table, settling_bounds, values
+from pierburg_ros.closed_loop.loop import simulate_laps
+from pierburg_ros.closed_loop.plants import HOT, NOMINAL, STICKY
+from pierburg_ros.closed_loop.search import search
+from pierburg_ros.control import Settings
+from pierburg_ros.errors import InputError
+from pierburg_ros.plant import Model
+
+NOISE = 0.003  # of the Hall voltage, RMS [V]
+RATE = 500.0  # [Hz]
+STATED = (NOMINAL, HOT, STICKY)  # the plants for which the goals are stated: they count most
+OTHERS = 0.06  # weight of the mean of the other plants
+WORST = 0.01  # weight of the worst plant of all
+MARGIN = 0.85  # within this share of its limit a quantity costs little more
+HOPELESS = 10.0  # times its limit or more: counts as this
+BEYOND = 0.02  # what being better still is worth, beside reaching the limit
+SEEDS = {True: (0, 1, 2), False: (3,)}  # of the noise, for the plants with stated goals and the others
+SHORT = Course(approach=0.3, hold=0.35, watch=1.2)  # enough to rank candidates
+FINALISTS = 6  # are judged once more on the whole course, which sees slow hunting
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A controller to tune for a goal over plants, by name; `NOMINAL` is one of them."""
+
+    design: Design
+    goal: Goal
+    plants: Mapping[str, Model]
+
+    def cost(self, settings: Settings, course: Course, at_most: float = math.inf) -> float:
+        """How far the responses fall short of the goal; counting stops above `at_most`."""
+        responses = [self.response(NOMINAL, settings, course, seed) for seed in SEEDS[True]]
+        bounds = settling_bounds(self.plants[NOMINAL], RATE)
+        total = worst = shortfall(responses, self.goal.nominal_limits(bounds)) / len(STATED)
+        settling = np.maximum(np.median(responses, axis=0)[:, 0], bounds)
+        other_limits = self.goal.other_limits(settling)
+        others = [*STATED[1:], *(name for name in self.plants if name not in STATED)]
+        for name in others:
+            if total > at_most or total == math.inf:
+                break
+            stated = name in STATED
+            responses = [self.response(name, settings, course, seed) for seed in SEEDS[stated]]
+            missed = shortfall(responses, other_limits)
+            total += missed / len(STATED) if stated else OTHERS * missed / (len(others) - 2)
+            worst = max(worst, missed)
+        return total + WORST * worst
+
+    def response(self, name: str, settings: Settings, course: Course, seed: int) -> Table:
+        """What the goal limits, for each step, shape (steps, 4); infinite where the plant breaks down."""
+        model, control = self.plants[name], self.design.control
+        try:
+            run = simulate_laps(model, settings, course.setpoints(RATE), RATE, NOISE, seed, control=control)
+        except InputError:
+            return np.full((len(STEPS), len(QUANTITIES)), np.inf)
+        return values(course.metrics(run))
+
+
+def shortfall(responses: Sequence[Table], limits: Table) -> float:
+    """Logarithmic excess over the limits, summed over quantities, averaged over responses and steps."""
+    ratios = np.minimum(np.array(responses) / limits, HOPELESS)
+    excess = np.log(np.maximum(ratios / MARGIN, 1.0)) + BEYOND * ratios
+    return float(excess.sum(axis=-1).mean())
+
+
+def tune(
+    task: Task,
+    generations: int,
+    members: int,
+    seed: int = 1,
+    on_generation: Callable[[float], None] = lambda best: None,
+) -> Settings:
+    """The best settings found; the same seed finds the same."""
+
+    def cost(point: Vector, at_most: float) -> float:
+        return task.cost(task.design.settings(point), SHORT, at_most)
+
+    found = search(cost, task.design.bounds, generations, members, seed, on_generation)
+    finalists = [task.design.settings(point) for point in found.points[:FINALISTS]]
+    return min(finalists, key=lambda settings: task.cost(settings, Course()))

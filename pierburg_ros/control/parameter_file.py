@@ -1,0 +1,57 @@
+"""Controller settings in the form of a ROS 2 parameter file, which node and simulation both take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from pierburg_ros.control.settings import SETTINGS, Settings
+from pierburg_ros.errors import InputError
+
+NODE = "controller"
+NODE_PARAMETERS = {"use_sim_time", "setpoint", "setpoint_file", "hall_timeout", "publish_internals"}
+"""Parameters of the controller's node that are not settings of the control law."""
+
+
+def parameter_file(settings: Settings, header: Iterable[str] = ()) -> str:
+    """The text of a parameter file with every setting, its unit and its meaning, under `header` lines."""
+    lines = [*(f"# {line}" for line in header), f"{NODE}:", "  ros__parameters:"]
+    for setting in SETTINGS:
+        value = getattr(settings, setting.name)
+        lines.append(f"    {setting.name}: {ros_double(value)}  # {setting.unit}, {setting.meaning}")
+    return "\n".join(lines) + "\n"
+
+
+def ros_double(value: float) -> str:
+    """A number as YAML that ROS reads as a double: always with a point."""
+    text = repr(float(value))
+    mantissa, exponent, power = text.partition("e")
+    return (mantissa if "." in mantissa else f"{mantissa}.0") + exponent + power
+
+
+def read_parameter_file(path: str | Path) -> Settings:
+    """The settings in a parameter file; what it does not name keeps its default."""
+    try:
+        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{path} cannot be read as a parameter file: {reason}.") from error
+    given = {name: value for name, value in parameters_of(content, path).items() if name not in NODE_PARAMETERS}
+    try:
+        return Settings().with_values(given)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def parameters_of(content: Any, path: str | Path) -> dict[str, Any]:
+    """The parameters that a file's content has for the node `controller`, in whatever namespace."""
+    nodes = content.items() if isinstance(content, dict) else ()
+    for node, section in nodes:
+        if str(node).split("/")[-1] in (NODE, "**") and isinstance(section, dict):
+            parameters = section.get("ros__parameters")
+            if isinstance(parameters, dict):
+                return parameters
+    raise InputError(f"{path} has no section {NODE}: ros__parameters; write the settings below these keys.")

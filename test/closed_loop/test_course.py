@@ -1,0 +1,63 @@
+"""The course of steps and the plants it is run on."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pierburg_ros.closed_loop.course import STEPS, WAYS, Course
+from pierburg_ros.closed_loop.loop import Run
+from pierburg_ros.closed_loop.plants import CHANGES, NOMINAL, plant_set
+from pierburg_ros.effects import EFFECTS
+
+
+def test_has_every_size_both_ways_in_three_ways():
+    found = [(round(math.degrees(abs(step.target - step.start))), step.opens) for step in STEPS]
+    assert found == [(size, opens) for size in (5, 20, 50, 80) for opens in (True, False) for _ in range(WAYS)]
+
+
+def test_each_kind_starts_after_opening_and_after_closing():
+    for first in range(0, len(STEPS), WAYS):
+        arrivals = {step.start > step.before for step in STEPS[first : first + 2]}
+        assert arrivals == {True, False}
+
+
+def test_stays_between_the_stops():
+    angles = [angle for step in STEPS for angle in (step.before, step.start, step.target)]
+    assert min(angles) >= 0.0 and max(angles) <= math.pi / 2 + 1e-12
+
+
+def test_the_setpoints_bring_arrival_rest_and_step():
+    setpoints = Course(approach=0.1, hold=0.2, watch=0.5).setpoints(100.0)
+    assert setpoints.shape == (len(STEPS), 80)
+    for step, setpoint in zip(STEPS, setpoints, strict=True):
+        assert (setpoint[9], setpoint[10], setpoint[29], setpoint[30]) == (
+            step.before,
+            step.start,
+            step.start,
+            step.target,
+        )
+
+
+def test_the_metrics_are_cut_at_the_steps():
+    """A shaft that is always where the setpoint was 40 ms ago settles after 40 ms, everywhere."""
+    setpoint = Course(approach=0.3, hold=0.4, watch=0.8).setpoints(500.0)
+    angle = np.concatenate([np.zeros((len(STEPS), 20)), setpoint[:, :-20]], axis=1)
+    run = Run(np.arange(setpoint.shape[1]) / 500.0, setpoint, 0 * angle, 0 * angle, angle)
+    for metrics in Course(approach=0.3, hold=0.4, watch=0.8).metrics(run):
+        assert metrics.settling == pytest.approx(0.040)
+        assert metrics.rise == 0.0
+        assert metrics.steady_state_error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_every_effect_of_the_catalogue_is_among_the_plants():
+    used = {name.split(".")[0] for changes in CHANGES.values() for name in changes if "." in name}
+    assert used == {effect.id for effect in EFFECTS}
+
+
+def test_every_plant_acts_as_its_name_says():
+    plants = plant_set()
+    assert plants[NOMINAL].active_effects == ()
+    for name, model in plants.items():
+        effects = {key.split(".")[0] for key in CHANGES[name] if "." in key}
+        assert set(model.active_effects) == effects
