@@ -1,0 +1,1 @@
+"""Parameters from data: static characteristic, step response, fits of whole recordings, excitation."""

@@ -1,0 +1,106 @@
+"""Which parameters a recording can tell, and in words why it cannot tell the others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.identification.fit import Fit
+from pierburg_ros.identification.problem import Problem
+from pierburg_ros.identification.scaling import Scaling
+from pierburg_ros.recording.recording import Recording
+
+Signal = NDArray[np.float64]
+KNOWN = 0.1
+"""A parameter counts as identifiable when its 95 % half-width is below a tenth of it."""
+MOST_PARTNERS = 4
+"""Largest number of parameters looked for as those that together imitate another."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a recording says of one parameter while those that are free adapt to any change of it.
+
+    `half_width` is its 95 % half-width, relative (for a parameter that may be negative: in tenths of its
+    plausible range); None where it is infinite. `imitation`: the percent change of others that equals +1 %.
+    """
+
+    identifiable: bool
+    half_width: float | None
+    imitation: dict[str, float]
+    reason: str
+
+
+def identifiability(fitted: Fit, recordings: Sequence[Recording]) -> dict[str, Finding]:
+    """A finding for every base parameter of the actuator, free or held, and every other free parameter."""
+    names = tuple(dict.fromkeys([*fitted.model.actuator.parameters, *fitted.names]))
+    problem = Problem(recordings, Scaling.of(fitted.model, names))
+    jacobian = problem.sharp_jacobian(np.zeros(len(names)))
+    noise = max(fitted.uncertainty.noise, 1e-9)
+    trace = _Trace(names, fitted.names, jacobian, noise, recordings[0].unit)
+    return {name: trace.finding(name) for name in names}
+
+
+@dataclass(frozen=True)
+class _Trace:
+    names: tuple[str, ...]
+    free: tuple[str, ...]
+    jacobian: Signal
+    noise: float
+    unit: str
+
+    def finding(self, name: str) -> Finding:
+        own = self.jacobian[:, self.names.index(name)]
+        others = [other for other in self.free if other != name]
+        left, _ = self._left_over(own, others)
+        width = 1.96 * self.noise / left if left > 1e-9 else None
+        if width is not None and width < KNOWN:
+            return Finding(True, width, {}, f"known to {_percent(width)} (95 %).")
+        alone = float(np.linalg.norm(own))
+        if 1.96 * self.noise > KNOWN * alone:
+            return Finding(False, width, {}, self._no_trace(own))
+        partners, changes = self._imitation(own, others)
+        imitation = dict(zip(partners, changes, strict=True))
+        return Finding(False, width, imitation, self._tie(name, own, imitation))
+
+    def _left_over(self, own: Signal, partners: Sequence[str]) -> tuple[float, Signal]:
+        """Length of what `partners` cannot imitate of `own`, and the changes with which they do the rest."""
+        if not partners:
+            return float(np.linalg.norm(own)), np.empty(0)
+        columns = self.jacobian[:, [self.names.index(partner) for partner in partners]]
+        lengths = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        changes = np.linalg.lstsq(columns / lengths, own, rcond=1e-6)[0] / lengths
+        return float(np.linalg.norm(own - columns @ changes)), changes
+
+    def _imitation(self, own: Signal, others: Sequence[str]) -> tuple[tuple[str, ...], Signal]:
+        """The fewest parameters that imitate `own` below the noise, and their changes."""
+        for size in range(1, min(MOST_PARTNERS, len(others)) + 1):
+            tried = [(*self._left_over(own, group), group) for group in combinations(others, size)]
+            left, changes, group = min(tried, key=lambda row: row[0])
+            if 1.96 * self.noise > KNOWN * left:
+                return group, changes
+        return tuple(others), self._left_over(own, others)[1]
+
+    def _no_trace(self, own: Signal) -> str:
+        change = 0.1 * np.linalg.norm(own) / np.sqrt(own.size)
+        return (
+            f"leaves no trace: 10 % more of it changes the signal by {change:.2g} {self.unit} rms, "
+            f"under a residual of {self.noise:.2g} {self.unit}."
+        )
+
+    def _tie(self, name: str, own: Signal, imitation: dict[str, float]) -> str:
+        left, _ = self._left_over(own, tuple(imitation))
+        partners = " with ".join(f"{other} {change:+.2f} %" for other, change in imitation.items())
+        return (
+            f"tied: +1 % of it looks like {partners}; the two differ by "
+            f"{0.01 * left / np.sqrt(own.size):.1g} {self.unit} rms, "
+            f"under a residual of {self.noise:.2g} {self.unit}."
+        )
+
+
+def _percent(share: float) -> str:
+    return f"+-{100.0 * share:.2g} %"

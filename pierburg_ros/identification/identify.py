@@ -1,0 +1,158 @@
+"""What `pierburg identify` finds in recordings: the paper's way beside the fit of whole recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
+from pierburg_ros.identification.fit import Fit, fit
+from pierburg_ros.identification.identifiability import Finding, identifiability
+from pierburg_ros.identification.lumps import Lump, fitted_duties, fitted_lumps
+from pierburg_ros.identification.resimulation import noise_scale, resimulate
+from pierburg_ros.identification.static_characteristic import (
+    StaticCharacteristic,
+    static_characteristic,
+)
+from pierburg_ros.identification.step_response import StepResponse, step_response
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
+
+HELD = ("supply_voltage", "spring_stiffness", "gravity_torque")
+"""Held unless freed: the supply can be measured, and duty and angle leave the scale of all torques open."""
+TRAINED_SHARE = 0.7
+"""Share of a single recording that the validated fit sees."""
+
+
+@dataclass(frozen=True)
+class Identification:
+    """The fit of all recordings, what it says of every parameter, and the paper's own procedure beside it.
+
+    `validation_rmse` is that of a second fit on data that it did not see, in the measured unit.
+    """
+
+    model: Model
+    fitted: Fit
+    findings: dict[str, Finding]
+    lumps: dict[str, Lump] | None
+    static: StaticCharacteristic | None
+    steps: StepResponse | None
+    validation_rmse: float
+    noise: float
+
+    def as_mapping(self) -> dict[str, Any]:
+        """The content of identification.json (section 5 of the contract)."""
+        return {
+            "schema": 1,
+            "parameters": {name: self._parameter(name) for name in self.findings},
+            "lumps": self.lumps and {name: _lump(lump) for name, lump in self.lumps.items()},
+            "static_characteristic": self._static(),
+            "fit": {
+                "training": {"rmse": self.fitted.rmse},
+                "validation": {"rmse": self.validation_rmse},
+            },
+        }
+
+    def _parameter(self, name: str) -> dict[str, Any]:
+        finding, fixed = self.findings[name], name not in self.fitted.names
+        interval = None if fixed or not finding.identifiable else list(self.fitted.ci95[name])
+        return {
+            "value": self.fitted.model.values[name],
+            "unit": unit_of(self.model, name),
+            "ci95": interval,
+            "identifiable": finding.identifiable,
+            "fixed": fixed,
+        }
+
+    def _static(self) -> dict[str, Any] | None:
+        """D_c and D_pre of the settled angles, or where those are too few, of the fit."""
+        if self.static is not None:
+            pair = {"D_c": self.static.coulomb_duty, "D_pre": self.static.preload_duty}
+            return {name: {"value": x.value, "ci95": list(x.ci95)} for name, x in pair.items()}
+        if self.lumps is None:
+            return None
+        return {
+            name: {"value": duty.value, "ci95": list(duty.ci95) if duty.ci95 else None}
+            for name, duty in fitted_duties(self.fitted).items()
+        }
+
+
+def identify(
+    model: Model, recordings: Sequence[Recording], free: Sequence[str] = (), fixed: Sequence[str] = ()
+) -> Identification:
+    """Identify the actuator of `model` from `recordings`; `free` and `fixed` change what is fitted."""
+    for recording in recordings:
+        refuse_unmoved(recording)
+    names = free_names(model, free, fixed)
+    fitted = fit(model, recordings, names)
+    spring = model.actuator.load == "spring"
+    static = static_characteristic(recordings, model.actuator)
+    supply = fitted.model.values["supply_voltage"]
+    return Identification(
+        model,
+        fitted,
+        identifiability(fitted, recordings),
+        fitted_lumps(fitted) if spring else None,
+        static,
+        step_response(recordings, model.actuator, static, supply) if spring else None,
+        validation_rmse(fitted.model, recordings, names),
+        float(np.sqrt(np.mean([noise_scale(recording.measured) ** 2 for recording in recordings]))),
+    )
+
+
+def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()) -> tuple[str, ...]:
+    """The parameters to fit: the actuator's free ones but HELD, those of effects that act, and `free`."""
+    for name in (*free, *fixed):
+        model.range(name)
+    base = [name for name in model.actuator.free if name not in HELD]
+    effects = [
+        f"{effect}.{parameter.name}"
+        for effect in model.active_effects
+        for parameter in EFFECT[effect].parameters
+        if not parameter.choices and model.values[f"{effect}.{parameter.name}"] != 0.0
+    ]
+    names = tuple(name for name in dict.fromkeys([*base, *effects, *free]) if name not in fixed)
+    if not names:
+        raise InputError("Every parameter is fixed; expected one or more to fit. Leave out a --fix.")
+    return names
+
+
+def refuse_unmoved(recording: Recording) -> None:
+    """InputError where the shaft does not move or the recording is too short to identify anything."""
+    noise = noise_scale(recording.measured)
+    middle = np.percentile(recording.measured, [1.0, 99.0])
+    if recording.time.size < 100 or middle[1] - middle[0] < 20.0 * noise or np.ptp(recording.measured) == 0.0:
+        raise InputError(
+            f"{recording.name} shows no motion to identify from ({recording.time.size} samples, "
+            f"{middle[1] - middle[0]:.3g} {recording.unit} of travel, noise {noise:.2g} {recording.unit}). "
+            "Record one of the recipes of 'pierburg experiment'."
+        )
+
+
+def validation_rmse(start: Model, recordings: Sequence[Recording], names: Sequence[str]) -> float:
+    """RMSE on unseen data: of the last recording, or of the end of the only one, fitted to the rest."""
+    if len(recordings) > 1:
+        seen, unseen, first = recordings[:-1], recordings[-1], 0
+    else:
+        unseen = recordings[0]
+        end = TRAINED_SHARE * unseen.duration
+        seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
+    fitted = fit(start, seen, names, starts=1)
+    residual = (unseen.measured - resimulate(fitted.model, unseen))[first:]
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def unit_of(model: Model, name: str) -> str:
+    """Unit of a parameter by its dotted name."""
+    if "." not in name:
+        return model.actuator.parameters[name].unit
+    effect, own = name.split(".")
+    return EFFECT[effect].parameter(own).unit
+
+
+def _lump(lump: Lump) -> dict[str, Any]:
+    return {"value": lump.value, "unit": lump.unit, "ci95": list(lump.ci95) if lump.ci95 else None}

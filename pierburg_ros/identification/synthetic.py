@@ -1,0 +1,25 @@
+"""Recordings of a simulated actuator, as a bench with a noisy sensor would make them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
+
+Signal = NDArray[np.float64]
+
+
+def synthetic_recording(
+    model: Model, time: Signal, duty: Signal, noise: float = 0.003, seed: int = 0, name: str = "simulated"
+) -> Recording:
+    """What a bench would record of `model` from rest at angle 0.
+
+    `duty` holds from each `time` [s] to the next; `noise` is the sensor's standard deviation [measured unit].
+    """
+    keep = np.concatenate([[True], np.diff(duty) != 0.0])
+    changes = Channel(time[keep], duty[keep])
+    clean = simulate(model, Inputs(changes.time, changes.values), time)
+    measured = clean + noise * np.random.default_rng(seed).standard_normal(time.size)
+    return Recording(name, model.actuator.quantity, time - time[0], measured, changes, time_source="publish")

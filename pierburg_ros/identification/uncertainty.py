@@ -1,0 +1,83 @@
+"""How well a fit knows its parameters: from white noise, or from blocks where the residual is not white."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+Signal = NDArray[np.float64]
+RANK = 1e-5
+"""Singular values below this share of the largest are differences of rounding, not information."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Covariance of the coordinates, shape (names, names), and the factor from deviation to 95 %.
+
+    `undetermined`: nothing in the recording fixes this coordinate, shape (names,); its covariance is void.
+    `noise` is the residual's standard deviation. `white`: the residual looks like sensor noise, so the
+    classical covariance holds. If not, it is the sandwich over `blocks` stretches of the residual, each a few
+    correlation times long: honest about correlated noise, but it repairs no error of the model.
+    """
+
+    covariance: Signal
+    undetermined: NDArray[np.bool_]
+    factor: float
+    noise: float
+    white: bool
+    blocks: int
+
+
+def uncertainty(jacobian: Signal, residuals: tuple[Signal, ...]) -> Uncertainty:
+    """Uncertainty of a least-squares fit from its Jacobian, shape (samples, names), and its residuals."""
+    residual = np.concatenate(residuals)
+    freedom = max(residual.size - jacobian.shape[1], 1)
+    variance = float(residual @ residual) / freedom
+    inverse, undetermined = _inverse(jacobian)
+    length = max(correlation_length(part) for part in residuals)
+    if length <= 1:
+        factor = float(stats.norm.ppf(0.975))
+        return Uncertainty(variance * inverse, undetermined, factor, variance**0.5, True, residual.size)
+    scores = _block_scores(jacobian, residuals, 4 * length)
+    blocks = len(scores)
+    middle = scores.T @ scores * blocks / max(blocks - 1, 1)
+    factor = float(stats.t.ppf(0.975, max(blocks - jacobian.shape[1], 1)))
+    return Uncertainty(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
+
+
+def _inverse(jacobian: Signal) -> tuple[Signal, NDArray[np.bool_]]:
+    """Inverse of jacobian' jacobian in the directions that the data fix, and who takes part in others."""
+    _, lengths, directions = np.linalg.svd(jacobian, full_matrices=False)
+    known = lengths > RANK * max(lengths[0], 1e-300)
+    scaled = directions[known] / lengths[known, None]
+    return scaled.T @ scaled, np.linalg.norm(directions[~known], axis=0) > 0.05
+
+
+def correlation_length(residual: Signal) -> int:
+    """Samples after which the residual no longer resembles itself; 1 for white noise.
+
+    Counts the lags up to the first whose autocorrelation is below 0.05, or within what white noise shows by
+    chance (4 deviations) if that is more.
+    """
+    centred = residual - residual.mean()
+    size = centred.size
+    spectrum = np.abs(np.fft.rfft(centred, 2 * size)) ** 2
+    power = np.fft.irfft(spectrum)[: max(size // 4, 2)]
+    if power[0] <= 0.0 or power[1] < 4.0 / np.sqrt(size) * power[0]:
+        return 1
+    below = np.flatnonzero(power < max(4.0 / np.sqrt(size), 0.05) * power[0])
+    return int(max(below[0], 2)) if below.size else power.size
+
+
+def _block_scores(jacobian: Signal, residuals: tuple[Signal, ...], length: int) -> Signal:
+    """Sums of jacobian times residual over blocks of at least `length` samples, shape (blocks, names)."""
+    scores, first = [], 0
+    for part in residuals:
+        product = jacobian[first : first + part.size] * part[:, None]
+        first += part.size
+        starts = np.arange(0, max(part.size - length, 0) + 1, length)
+        scores.append(np.add.reduceat(product, starts, axis=0))
+    return np.concatenate(scores)

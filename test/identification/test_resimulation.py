@@ -1,0 +1,55 @@
+"""Recorded inputs and starts, as the simulator gets them."""
+
+import numpy as np
+import pytest
+
+from pierburg_ros.identification.resimulation import Start, inputs_of, noise_scale, resimulate
+from pierburg_ros.identification.synthetic import synthetic_recording
+from pierburg_ros.recording import Channel, Recording
+
+TIME = np.arange(2000) / 500.0
+
+
+def recording(measured, **channels):
+    duty = channels.pop("duty", Channel(np.array([0.0, 1.0]), np.array([0.0, 0.22])))
+    return Recording("run", "hall_voltage", TIME, measured, duty, **channels)
+
+
+def test_channels_on_different_times_are_held_until_their_next_value():
+    supply = Channel(np.array([0.5, 1.5]), np.array([12.0, 13.0]))
+    enabled = Channel(np.array([1.0]), np.array([0.0]))
+    inputs = inputs_of(recording(np.ones(2000), supply_voltage=supply, enabled=enabled))
+    assert inputs.time.tolist() == [0.0, 0.5, 1.0, 1.5]
+    assert inputs.duty.tolist() == [0.0, 0.0, 0.22, 0.22]
+    assert inputs.supply_voltage.tolist() == [12.0, 12.0, 12.0, 13.0]
+    assert inputs.enabled.tolist() == [True, True, False, False]
+
+
+def test_noise_of_a_moving_signal_is_that_of_its_sensor():
+    noise = 0.003 * np.random.default_rng(2).standard_normal(2000)
+    assert noise_scale(1.0 + np.sin(3.0 * TIME) + noise) == pytest.approx(0.003, rel=0.1)
+
+
+def test_a_shaft_seen_at_a_stop_starts_exactly_there(nominal):
+    noise = 0.003 * np.random.default_rng(3).standard_normal(2000)
+    start = Start.of(recording(0.4205 + noise))
+    assert start.state(nominal, "hall_voltage") == (0.0, 0.0)
+
+
+def test_a_shaft_held_half_way_starts_at_the_mean_of_its_first_samples(nominal):
+    noise = 0.003 * np.random.default_rng(3).standard_normal(2000)
+    angle, velocity = Start.of(recording(2.47 + noise)).state(nominal, "hall_voltage")
+    assert angle == pytest.approx(np.pi / 4, abs=3e-4)
+    assert velocity == 0.0
+
+
+def test_a_shaft_that_moves_at_once_starts_with_its_velocity(nominal):
+    moving = 2.47 + 2.0 * TIME + 1e-4 * np.random.default_rng(3).standard_normal(2000)
+    _, velocity = Start.of(recording(moving)).state(nominal, "hall_voltage")
+    assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
+
+
+def test_a_recording_without_noise_is_simulated_again_exactly(nominal):
+    duty = np.where(TIME < 1.0, 0.0, 0.23)
+    run = synthetic_recording(nominal, TIME, duty, noise=0.0)
+    assert np.max(np.abs(resimulate(nominal, run) - run.measured)) == 0.0
