@@ -1,0 +1,109 @@
+"""Physics that several recordings share, where no explanation accounts for all: chosen on recordings left out.
+
+A real actuator lacks more than one thing, and with a low noise floor nothing is ever adequate. An effect is
+then believed if, fitted on the other recordings, it lowers the error on the recordings left out.
+"""
+
+from __future__ import annotations
+
+import itertools
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from pierburg_ros.diagnosis.evidence_data import EvidenceData
+from pierburg_ros.diagnosis.explanation import Explanation
+from pierburg_ros.diagnosis.explore import BRIEF, Exploration, canonical, label
+from pierburg_ros.diagnosis.hypotheses import Start, starts_of
+from pierburg_ros.diagnosis.search import Fit, Search
+
+FOLDS = 4
+"""Parts into which the recordings are divided, each left out in turn."""
+LOOKED_AT = 6
+"""Candidates of each round that are judged on recordings left out."""
+WORTH = 0.95
+"""An effect must bring the error on recordings left out below this share of what it was."""
+MOST = 5
+"""Most effects chosen."""
+OWN_TIME = frozenset({"external_load"})
+"""Effects that belong to one recording's time and cannot be shared."""
+
+
+@dataclass(frozen=True)
+class Shared:
+    """The chosen fit, and the error on recordings left out before and after each effect, measured unit."""
+
+    fit: Fit
+    errors: list[tuple[str, float]]
+
+
+def select(exploration: Exploration, start: Fit) -> Shared:
+    """Effects on top of `start` that lower the error on recordings left out, one by one."""
+    data = _whole(exploration.data)
+    search = Search(data, exploration.nominal)
+    folds = _folds(data)
+    with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
+        chosen = _settled(search, start)
+        error = _left_out(search, folds, chosen)
+        errors = [("recalibrated", error)]
+        while len(chosen.explanation.variants) < MOST:
+            tasks = _tasks(exploration, data, chosen)
+            seen = pool.map(_look, itertools.repeat(search), itertools.repeat(chosen), tasks)
+            looks = sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:LOOKED_AT]
+            left_out = list(pool.map(_left_out, itertools.repeat(search), itertools.repeat(folds), looks))
+            best, fit = min(zip(left_out, looks, strict=True), key=lambda pair: pair[0])
+            exploration.progress(label(fit.explanation))
+            if best > WORTH * error:
+                break
+            error, chosen = best, _settled(search, fit)
+            errors.append((fit.explanation.variants[-1].label, error))
+        return Shared(chosen, errors)
+
+
+def _settled(search: Search, fit: Fit) -> Fit:
+    """The fit carried on until it is at rest: twice, since its damping starts afresh."""
+    return search.fit(fit.explanation, search.fit(fit.explanation, fit.values).values)
+
+
+def _whole(data: EvidenceData) -> EvidenceData:
+    """The data with every sample training: whole recordings are left out instead of blocks."""
+    runs = tuple(replace(run, training=np.ones(run.time.size, dtype=bool)) for run in data.runs)
+    return replace(data, runs=runs)
+
+
+def _folds(data: EvidenceData) -> list[tuple[EvidenceData, EvidenceData]]:
+    """Pairs of what is fitted and what is left out."""
+    count = min(FOLDS, len(data.runs))
+    pairs = []
+    for fold in range(count):
+        left = tuple(run for i, run in enumerate(data.runs) if i % count == fold)
+        rest = tuple(run for i, run in enumerate(data.runs) if i % count != fold)
+        pairs.append((replace(data, runs=rest), replace(data, runs=left)))
+    return pairs
+
+
+def _tasks(exploration: Exploration, data: EvidenceData, chosen: Fit) -> list[tuple[Explanation, list[Start]]]:
+    tasks = []
+    for variant, starts in starts_of(data, chosen.model).items():
+        grown = chosen.explanation.plus(variant)
+        if variant.free and variant.effect not in OWN_TIME and canonical(grown, exploration.drifts) is not None:
+            tasks.append((grown, starts))
+    return tasks
+
+
+def _look(search: Search, chosen: Fit, task: tuple[Explanation, list[Start]]) -> Fit | None:
+    grown, starts = task
+    promised = search.screened(chosen, grown.variants[-1], starts)[:2]
+    fits = [search.fit(grown, {**chosen.values, **start}, BRIEF) for _, start in promised]
+    return min(fits, key=lambda fit: fit.chi2) if fits else None
+
+
+def _left_out(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], fit: Fit) -> float:
+    """RMSE over all recordings, each simulated by a fit to the others, measured unit."""
+    squares = []
+    for fitted, left in folds:
+        own = Search(fitted, search.nominal).fit(fit.explanation, fit.values, BRIEF)
+        squares.append(np.mean(left.residual(own.model) ** 2))
+    return float(np.sqrt(np.mean(squares)) * search.data.noise)

@@ -1,0 +1,84 @@
+"""What the exploration amounts to: the verdict, the model, and the fits it is held against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import qr
+
+from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explore_alternatives
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
+from pierburg_ros.diagnosis.explanation import Explanation
+from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.schema import Verdict
+from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
+from pierburg_ros.plant import Model
+
+Signal = NDArray[np.float64]
+
+EXPLAINED = 1.10
+"""Error over noise, on training samples, from which structure is left that no tried explanation removes."""
+INDEPENDENT = 1e-3
+"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """The chosen fit with its alternatives, and the nominal and recalibrated ones it is held against."""
+
+    verdict: Verdict
+    chosen: Fit
+    nominal: Fit
+    recalibrated: Fit
+    alternatives: list[Alternative]
+    estimates: dict[str, Estimate]
+
+
+def conclude(exploration: Exploration) -> Conclusion:
+    """Run the exploration to its end and judge it."""
+    exploration.run()
+    explore_alternatives(exploration, exploration.preferred())
+    chosen = exploration.preferred()
+    search = exploration.search
+    return Conclusion(
+        verdict_on(chosen),
+        chosen,
+        exploration.fits[Explanation()],
+        recalibrated(exploration),
+        alternatives(exploration, chosen),
+        estimates(search, chosen),
+    )
+
+
+def verdict_on(chosen: Fit) -> Verdict:
+    """The verdict that a chosen explanation stands for."""
+    if chosen.ratio > EXPLAINED:
+        return "unexplained"
+    if chosen.explanation.variants:
+        return "missing_physics"
+    return "parameter_drift" if chosen.explanation.size else "consistent"
+
+
+def recalibrated(exploration: Exploration) -> Fit:
+    """The nominal structure with as many of its parameters re-estimated as the recordings tell apart."""
+    nominal = exploration.search.fit(Explanation(exploration.drifts), None, 0)
+    marks = nominal.solution.jacobian / np.maximum(np.linalg.norm(nominal.solution.jacobian, axis=0), 1e-12)
+    _, triangle, order = qr(marks, mode="economic", pivoting=True)
+    count = int(np.sum(np.abs(np.diag(triangle)) > INDEPENDENT))
+    names = {exploration.drifts[index] for index in order[:count]}
+    explanation = Explanation(tuple(name for name in exploration.drifts if name in names))
+    best_drift = min(
+        (fit for fit in exploration.fits.values() if not fit.explanation.variants and not fit.explanation.changed),
+        key=lambda fit: fit.chi2,
+    )
+    starts = [exploration.nominal.values, best_drift.values]
+    return min((exploration.search.fit(explanation, start) for start in starts), key=lambda fit: fit.chi2)
+
+
+def rmse(data: EvidenceData, model: Model, switch: Switch | None, training: bool) -> float | None:
+    """Root mean squared error on training or on judging samples, measured unit; None where there are none."""
+    residual = data.residual(model, switch)[data.training if training else ~data.training]
+    return float(np.sqrt(np.mean(residual**2)) * data.noise) if residual.size else None

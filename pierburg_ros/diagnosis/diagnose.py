@@ -1,0 +1,164 @@
+"""From recordings to a diagnosis: the whole path in one function."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.diagnosis import audit, findings
+from pierburg_ros.diagnosis.across import select
+from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, Run, evidence_of
+from pierburg_ros.diagnosis.explore import Exploration, Progress
+from pierburg_ros.diagnosis.locate import locations
+from pierburg_ros.diagnosis.motion import motion_of
+from pierburg_ros.diagnosis.regimes import regimes
+from pierburg_ros.diagnosis.residual_shape import Shape, fit_shape
+from pierburg_ros.diagnosis.schema import Diagnosis, Location, Regime, ResidualTorque, TorqueOverTime
+from pierburg_ros.diagnosis.uncertainty import estimates
+from pierburg_ros.diagnosis.windows import windows
+from pierburg_ros.diagnosis.wording import advice, summary
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
+
+Signal = NDArray[np.float64]
+
+CONFIRMED = 0.9
+"""Share of the error on unseen data to which a residual torque must bring it to be kept."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """The document, the model with the named physics, the runs, and signals of the first run for plots."""
+
+    diagnosis: Diagnosis
+    model: Model
+    runs: tuple[Run, ...]
+    signals: dict[str, Signal]
+
+
+def diagnose(
+    recordings: Sequence[Recording],
+    actuator: Actuator,
+    progress: Progress = lambda _: None,
+    nominal: Model | None = None,
+) -> Result:
+    """Locate, name and model what `nominal` (the actuator as described) lacks, from recordings alone.
+
+    `progress` is told what is being tried. InputError where the recordings cannot be used.
+    """
+    audit.refuse_unusable(recordings)
+    data = evidence_of(recordings, actuator)
+    exploration = Exploration(data, nominal or Model.nominal(actuator), progress)
+    conclusion = conclude(exploration)
+    shape = None
+    if conclusion.verdict == "unexplained":
+        conclusion, shape = _beyond_the_catalogue(exploration, conclusion, progress)
+    model = shape.model if shape is not None else conclusion.chosen.model
+    document = _document(recordings, exploration, conclusion, shape)
+    return Result(document, model, data.runs, _signals(data.runs[0], conclusion, model))
+
+
+def _beyond_the_catalogue(
+    exploration: Exploration, conclusion: Conclusion, progress: Progress
+) -> tuple[Conclusion, Shape | None]:
+    """What can be said where no explanation accounts for all.
+
+    Several recordings can vouch for effects that each lower the error on recordings left out; one recording
+    cannot. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
+    """
+    data = exploration.data
+    base = conclusion.recalibrated
+    if len(data.runs) > 1:
+        base = select(exploration, base).fit
+    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=estimates(exploration.search, base))
+    shape = fit_shape(data, base.model, progress)
+    return reopened, shape if shape.after < CONFIRMED * shape.before else None
+
+
+def _document(
+    recordings: Sequence[Recording], exploration: Exploration, conclusion: Conclusion, shape: Shape | None
+) -> Diagnosis:
+    data, chosen = exploration.data, conclusion.chosen
+    model = shape.model if shape is not None else chosen.model
+    effects = findings.effects(exploration, conclusion)
+    parameters = findings.parameters(exploration, conclusion)
+    quality = audit.data_quality(data.runs, data.actuator, data.noise)
+    fit = findings.fit_quality(exploration, conclusion, model)
+    changes = findings.changes(chosen)
+    hidden = findings.not_testable(exploration, conclusion)
+    places, ranges = _located(data, conclusion)
+    limits = audit.limits_of(data.runs, data.actuator, data.noise)
+    return Diagnosis(
+        schema=1,
+        recordings=[recording.name for recording in recordings],
+        quantity=data.actuator.quantity,
+        unit=data.actuator.unit,
+        verdict=conclusion.verdict,
+        summary=_cautioned(limits, summary(conclusion.verdict, effects, parameters, changes, fit, data.actuator.unit)),
+        effects=effects,
+        parameters=parameters,
+        changes=changes,
+        locations=places,
+        regimes=ranges,
+        fit=fit,
+        candidates=findings.candidates(exploration, conclusion),
+        not_testable=hidden,
+        residual_torque=_residual_torque(shape),
+        data_quality=quality,
+        advice=advice(conclusion.verdict, effects, parameters, hidden, limits),
+    )
+
+
+def _cautioned(limits: Sequence[audit.Limit], text: str) -> str:
+    """The summary, or, where the recordings cannot decide anything, why not."""
+    decisive = [limit.finding for limit in limits if limit.decisive]
+    return f"Nothing can be concluded: {' '.join(decisive)} {text}" if decisive else text
+
+
+def _located(data: EvidenceData, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
+    """Windows and regimes of the first recording in which the mismatch gathers; none where there is none.
+
+    Windows are where the named effects move the signal, or, where none is named, where the error is.
+    """
+    if conclusion.verdict in ("consistent", "parameter_drift"):
+        return [], []
+    run, chosen = data.runs[0], conclusion.chosen
+    motion = motion_of(run, data.actuator, data.noise)
+    residual = run.measured - run.simulated(conclusion.recalibrated.model)
+    mark = residual
+    if chosen.explanation.variants:
+        bare = chosen.model.with_values(
+            {f"{v.effect}.{name}": 0.0 for v in chosen.explanation.variants for name in EFFECT[v.effect].names}
+        )
+        mark = run.simulated(chosen.model, chosen.switch) - run.simulated(bare)
+    found = windows(motion.time, mark**2)
+    return locations(motion, residual, found), regimes(motion, residual)
+
+
+def _residual_torque(shape: Shape | None) -> ResidualTorque | None:
+    if shape is None or shape.model.residual_torque is None:
+        return None
+    grid = {key: np.asarray(shape.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    time, torque = shape.over_time
+    return ResidualTorque(
+        **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())
+    )
+
+
+def _signals(run: Run, conclusion: Conclusion, model: Model) -> dict[str, Signal]:
+    """Time [s], measured, duty, and what the three models make of the first run, each (samples,)."""
+    place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
+    return {
+        "time": run.time,
+        "measured": run.measured,
+        "duty": run.inputs.duty[place],
+        "nominal": run.simulated(conclusion.nominal.model),
+        "recalibrated": run.simulated(conclusion.recalibrated.model),
+        "final": run.simulated(model, conclusion.chosen.switch),
+    }

@@ -1,0 +1,60 @@
+"""What the data cannot tell apart: other explanations that fit as well as the chosen one."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+from pierburg_ros.diagnosis.explanation import Explanation, Quantity, Variant, quantities, without
+from pierburg_ros.diagnosis.explore import TIED, Exploration, canonical, repetition
+from pierburg_ros.diagnosis.search import Fit
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What may stand for one quantity of the chosen explanation, at equal fit."""
+
+    quantity: Quantity
+    instead: tuple[str, ...]
+
+
+def explore_alternatives(exploration: Exploration, best: Fit) -> None:
+    """Try what else could stand for each quantity of `best`: any other one, and for an effect any two parameters."""
+    for quantity in quantities(best.explanation):
+        rest = without(best.explanation, quantity)
+        exploration.grow(rest)
+        if isinstance(quantity, Variant):
+            start = {name: best.values[name] for name in rest.names}
+            free = [name for name in exploration.drifts if name not in rest.drifted and name != rest.changed]
+            for pair in itertools.combinations(free, 2):
+                key = canonical(Explanation((*rest.drifted, *pair), rest.variants, rest.changed), exploration.drifts)
+                if key is not None and key not in exploration.fits:
+                    exploration.consider(key, start, best)
+
+
+def alternatives(exploration: Exploration, best: Fit) -> list[Alternative]:
+    """For each quantity of `best`, what may stand for it: one other quantity, or two parameters for an effect."""
+    limit = best.chi2 + TIED * repetition(best)
+    own = set(quantities(best.explanation))
+    found = []
+    for fit in list(exploration.fits.values()):
+        if fit.chi2 > limit or fit.explanation == best.explanation:
+            continue
+        other = set(quantities(fit.explanation))
+        lacking, added = own - other, other - own
+        if len(lacking) != 1 or len(added) > 2:
+            continue
+        quantity = next(iter(lacking))
+        if len(added) == 2 and (isinstance(quantity, str) or any(isinstance(a, Variant) for a in added)):
+            continue
+        names = tuple(sorted(item if isinstance(item, str) else item.effect for item in added))
+        same_effect = isinstance(quantity, Variant) and names == (quantity.effect,)
+        if not same_effect and Alternative(quantity, names) not in found:
+            found.append(Alternative(quantity, names))
+    return found
+
+
+def visibility(exploration: Exploration, best: Fit, variant: Variant, starts: list[dict[str, float]]) -> float:
+    """The largest chi2 that `variant` at a plausible strength would leave on top of `best` after a re-fit."""
+    base = exploration.search.linearised(best)
+    return max((promise for promise in exploration.search.marks(base, variant, starts)), default=0.0)

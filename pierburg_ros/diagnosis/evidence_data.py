@@ -1,0 +1,141 @@
+"""What the diagnosis looks at: recordings as arrays, split into samples that train and samples that judge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.errors import InputError
+from pierburg_ros.identification.resimulation import Start, inputs_of
+from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
+from pierburg_ros.recording import Recording
+
+Signal = NDArray[np.float64]
+
+BLOCK = 3.0
+"""Length of the blocks [s] that train and judge in turn."""
+JUDGING = 4
+"""Every so many blocks one is kept from fit and selection, and judges."""
+
+
+@dataclass(frozen=True)
+class Switch:
+    """Another model that takes over at `time` [s]: a parameter that changed in the middle of a recording."""
+
+    model: Model
+    time: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording, ready to be simulated: inputs, samples, start, and which samples train."""
+
+    name: str
+    inputs: Inputs
+    time: Signal
+    measured: Signal
+    initial_angle: float
+    initial_velocity: float
+    training: NDArray[np.bool_]
+
+    def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
+        """What `model` makes of the inputs, in the measured unit, shape (samples,).
+
+        With a `switch` another model takes over in the middle, and the state goes on.
+        """
+        start = (self.initial_angle, self.initial_velocity)
+        if switch is None:
+            return simulate(model, self.inputs, self.time, *start)
+        return simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
+
+    def cut(self, duration: float) -> Run:
+        """The first `duration` [s] of the run."""
+        kept = slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2))
+        return replace(self, time=self.time[kept], measured=self.measured[kept], training=self.training[kept])
+
+
+@dataclass(frozen=True)
+class EvidenceData:
+    """All recordings of one actuator; `noise` is the standard deviation of the sensor noise, measured unit."""
+
+    actuator: Actuator
+    runs: tuple[Run, ...]
+    noise: float
+
+    def residual(self, model: Model, switch: Switch | None = None) -> Signal:
+        """Measured minus simulated over all runs, shape (samples,), in units of the noise."""
+        parts = [run.measured - run.simulated(model, switch) for run in self.runs]
+        return np.concatenate(parts) / self.noise
+
+    def cut(self, duration: float) -> EvidenceData:
+        """The first `duration` [s] of each run."""
+        return replace(self, runs=tuple(run.cut(duration) for run in self.runs))
+
+    @property
+    def angle_per_unit(self) -> float:
+        """Angle of one unit of the measured quantity [rad/V], or 1 where the angle itself is measured."""
+        if self.actuator.quantity == "position":
+            return 1.0
+        nominal = self.actuator.parameters
+        span = nominal["hall_voltage_open"].nominal - nominal["hall_voltage_closed"].nominal
+        return float(np.pi / 2 / span)
+
+    @property
+    def training(self) -> NDArray[np.bool_]:
+        """Which samples of `residual` train."""
+        return np.concatenate([run.training for run in self.runs])
+
+    @property
+    def time(self) -> Signal:
+        """Time of each sample of `residual`, from the first sample of its own run [s]."""
+        return np.concatenate([run.time for run in self.runs])
+
+
+def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> EvidenceData:
+    """The recordings, ready for diagnosis; the noise is estimated from them. InputError where they do not fit."""
+    for recording in recordings:
+        if recording.quantity != actuator.quantity:
+            raise InputError(
+                f"{recording.name} holds {recording.quantity}, but actuator {actuator.name} measures "
+                f"{actuator.quantity}. Choose the actuator that was recorded."
+            )
+    nominal = Model.nominal(actuator)
+    runs = []
+    for recording in recordings:
+        angle, velocity = Start.of(recording).state(nominal, recording.quantity)
+        inputs, time = inputs_of(recording), recording.time
+        blocks = training_blocks(time)
+        runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, blocks))
+    noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
+    return EvidenceData(actuator, tuple(runs), noise)
+
+
+def training_blocks(time: Signal) -> NDArray[np.bool_]:
+    """True where a sample trains: blocks of 3 s, every fourth judging; a short recording gets shorter blocks."""
+    length = min(BLOCK, (time[-1] - time[0]) / (2 * JUDGING))
+    block = np.floor((time - time[0]) / length).astype(int)
+    return np.asarray(block % JUDGING != JUDGING - 2)
+
+
+def noise_of(time: Signal, measured: Signal) -> float:
+    """Standard deviation of the white part of a smooth signal, same unit, from its third differences.
+
+    The third difference of white noise has 20 times its variance. Differences across gaps are left out, and of
+    the others the largest tenth, where the signal has kinks, which takes 38 % off the variance of a normal
+    distribution. Never less than the rounding to the smallest step between values, step / sqrt(12).
+    """
+    interval = np.diff(time)
+    regular = interval < 1.5 * np.median(interval)
+    together = regular[:-2] & regular[1:-1] & regular[2:]
+    differences = np.abs(np.diff(measured, 3)[together])
+    deviation = 0.0
+    if differences.size:
+        kept = differences[differences <= np.quantile(differences, 0.9)]
+        deviation = float(np.sqrt(np.mean(np.square(kept)) / (20.0 * 0.623)))
+    values = np.unique(measured)
+    step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
+    return float(max(deviation, step / np.sqrt(12.0), 1e-9))

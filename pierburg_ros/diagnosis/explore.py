@@ -1,0 +1,257 @@
+"""The exploration of explanations, from the smallest up: what else could be the case, and how well would it fit?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from pierburg_ros.diagnosis.evidence_data import EvidenceData
+from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
+from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, starts_of
+from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.plant import Model
+
+Progress = Callable[[str], None]
+Growth = str | tuple[Variant, list[Start]]
+"""What an explanation grows by: a parameter (drifted or changed), or an effect with its starting values."""
+
+ADEQUATE = 1.03
+"""Training error over noise up to which an explanation accounts for all there is."""
+COMPLETE = 1.01
+"""Training error over noise at which the search for explanations of one size ends."""
+RIVALS = 3
+"""Explanations of one size that are grown while none is adequate, besides every single drift."""
+SIGNIFICANT = 60.0
+"""Gain in chi2, in effective samples, that one more quantity must bring; calibrated on recordings with none."""
+GLANCE = 24.0
+"""How much of a recording [s] a first look takes in."""
+PROMISING = 15.0
+"""Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up."""
+TIED = 12.0
+"""Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
+BRIEF, FULL = 6, 25
+"""Iterations of a first look, and of a whole fit."""
+STARTS_TRIED = 2
+"""Starts from which a first look is taken."""
+FINISHED = 4
+"""How many of the best first looks are always followed by a whole fit."""
+TIMED = frozenset({"external_load", "thermal_resistance"})
+"""Effects that may show late: a first look at them takes in the whole recording."""
+LARGEST = 3
+"""Explanations of more quantities than this are not tried."""
+
+
+class Exploration:
+    """All explanations tried so far, each with its best fit."""
+
+    def __init__(self, data: EvidenceData, nominal: Model, progress: Progress = lambda _: None) -> None:
+        self.search = Search(data, nominal)
+        self.glance = Search(data.cut(GLANCE), nominal)
+        self.drifts = drifting(nominal)
+        self.data = data
+        self.nominal = nominal
+        self.fits: dict[Explanation, Fit] = {}
+        self._grown: set[Explanation] = set()
+        self.progress = progress
+
+    def run(self) -> Fit:
+        """Explore until the best explanation cannot be bettered by one more quantity; gives that best one."""
+        with threadpool_limits(1):
+            best = self.add(Explanation())
+            self.grow(Explanation())
+            best = self.preferred()
+            while best.explanation.size < LARGEST:
+                for seed in self._promising(best):
+                    self.grow(seed)
+                    grown = self.best_of_size(seed.size + 1)
+                    if best.ratio > ADEQUATE and grown is not None and grown.ratio <= COMPLETE:
+                        break
+                better = self._pruned()
+                if better.explanation.size <= best.explanation.size:
+                    best = better
+                    break
+                best = better
+            return best
+
+    def add(self, explanation: Explanation, start: Start | None = None, iterations: int = FULL) -> Fit:
+        """Fit an explanation and keep it if it is the best of its kind so far."""
+        fit = self.search.fit(explanation, start, iterations)
+        known = self.fits.get(explanation)
+        if known is None or fit.chi2 < known.chi2:
+            self.fits[explanation] = fit
+        return self.fits[explanation]
+
+    def consider(self, explanation: Explanation, start: Start, rival: Fit) -> None:
+        """Fit an explanation briefly, and to the end only where it comes near `rival`."""
+        look = self.glance.fit(explanation, start)
+        if look.ratio < 1.3 * rival.ratio:
+            fit = self.add(explanation, look.values)
+            self.add(explanation, fit.values)
+
+    def preferred(self) -> Fit:
+        """The smallest explanation that no larger one betters significantly; of equals, the one with least effects."""
+        best = self.best_of_size(0)
+        assert best is not None
+        for size in range(1, LARGEST + 1):
+            larger = self.best_of_size(size)
+            if larger is not None and self.gain(best, larger) > SIGNIFICANT * (size - best.explanation.size):
+                best = larger
+        return min([best, *self.rivals(best)], key=_preference)
+
+    def rivals(self, best: Fit) -> list[Fit]:
+        """Other explanations of the size of `best` that the data cannot tell from it."""
+        limit = best.chi2 + TIED * repetition(best)
+        size = best.explanation.size
+        fits = [fit for fit in list(self.fits.values()) if fit.explanation.size == size and fit is not best]
+        return [fit for fit in fits if fit.chi2 < limit]
+
+    def best_of_size(self, size: int) -> Fit | None:
+        """The best fit among explanations of `size` quantities, None where none was tried."""
+        fits = [fit for fit in list(self.fits.values()) if fit.explanation.size == size]
+        return min(fits, key=lambda fit: fit.chi2) if fits else None
+
+    def gain(self, smaller: Fit, larger: Fit) -> float:
+        """What the larger explanation gains in chi2, counted in effective samples."""
+        return (smaller.chi2 - larger.chi2) / repetition(larger)
+
+    def _pruned(self) -> Fit:
+        """The preferred explanation after each of its parts has been fitted again from its values.
+
+        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins.
+        """
+        best = self.preferred()
+        while True:
+            for quantity in quantities(best.explanation):
+                self.add(without(best.explanation, quantity), best.values)
+            kept = self.preferred()
+            if kept.explanation.size >= best.explanation.size:
+                return kept
+            best = kept
+
+    def _promising(self, best: Fit) -> list[Explanation]:
+        """Explanations of the size of `best` worth growing: itself, and while nothing is adequate its rivals."""
+        size = best.explanation.size
+        if best.ratio <= ADEQUATE:
+            return [best.explanation]
+        rivals = [fit for fit in self.fits.values() if fit.explanation.size == size]
+        steady = [fit.chi2 for fit in rivals if fit.explanation.changed is None]
+        rivals = [f for f in rivals if f.explanation.changed is None or f.chi2 < 0.5 * min(steady, default=np.inf)]
+        rivals.sort(key=lambda fit: fit.chi2)
+        alone = [fit.explanation for fit in rivals if not fit.explanation.variants and size == 1]
+        return list(dict.fromkeys([fit.explanation for fit in rivals[:RIVALS]] + alone))
+
+    def grow(self, seed: Explanation) -> None:
+        """Fit every explanation that has one quantity more than `seed`."""
+        if seed in self._grown:
+            return
+        self._grown.add(seed)
+        base = self.fits.get(seed) or self.add(seed)
+        bases = {search: search.linearised(base) for search in (self.search, self.glance)}
+        tasks = self._tasks(seed, base)
+        with ThreadPoolExecutor(2) as pool:
+            looks = list(pool.map(lambda task: self._look(bases, *task), tasks))
+            list(pool.map(self._finish, self._worth_finishing(bases, [look for look in looks if look])))
+
+    def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:
+        """The explanations to try on top of `seed`, each with what is added."""
+        grown: list[tuple[Explanation, Growth]] = []
+        for name in self.drifts:
+            grown.append((Explanation((*seed.drifted, name), seed.variants, seed.changed), name))
+            if not seed.variants and seed.changed is None and len(self.data.runs) == 1:
+                grown.append((Explanation(seed.drifted, seed.variants, name), name))
+        for variant, starts in starts_of(self.data, base.model).items():
+            grown.append((seed.plus(variant), (variant, starts)))
+        tasks: dict[Explanation, Growth] = {}
+        for explanation, growth in grown:
+            key = canonical(explanation, self.drifts)
+            if key is not None and key not in self.fits:
+                tasks.setdefault(key, growth)
+        return list(tasks.items())
+
+    def _look(self, bases: dict[Search, Fit], explanation: Explanation, growth: Growth) -> tuple[Search, Fit] | None:
+        """A brief fit of one grown explanation, from the starts that promise most on top of the base."""
+        self.progress(label(explanation))
+        if isinstance(growth, str):
+            if explanation.changed != growth:
+                return self.glance, self.glance.fit(explanation, bases[self.glance].values, BRIEF)
+            starts = self.search.change_starts(bases[self.search], growth, STARTS_TRIED)
+            looks = [self.search.fit(explanation, start, BRIEF) for start in starts]
+            return self.search, self.search.dated(min(looks, key=lambda fit: fit.ratio))
+        variant, starts = growth
+        search = self.search if variant.effect in TIMED or explanation.changed else self.glance
+        base = bases[search]
+        promised = search.screened(base, variant, starts)[:STARTS_TRIED]
+        if base.ratio <= ADEQUATE:
+            promised = [pair for pair in promised if base.chi2 - pair[0] > PROMISING]
+        looks = []
+        for _, start in promised:
+            start = {**base.values, **start}
+            looks.append(search.fit(explanation, start, BRIEF))
+            if variant.effect in ROUGH and looks[-1].ratio > ADEQUATE:
+                forgiving = search.fit(explanation, start, BRIEF, forgiving=True)
+                looks.append(search.fit(explanation, forgiving.values, BRIEF))
+        return (search, min(looks, key=lambda fit: fit.ratio)) if looks else None
+
+    def _worth_finishing(self, bases: dict[Search, Fit], looks: list[tuple[Search, Fit]]) -> list[Fit]:
+        """Looks that deserve a whole fit: the best; on an adequate base only what gains noticeably."""
+        if bases[self.search].ratio <= ADEQUATE:
+            return [fit for search, fit in looks if bases[search].chi2 - fit.chi2 > PROMISING]
+        fits = sorted((fit for _, fit in looks), key=lambda fit: fit.ratio)
+        near = 1.3 * fits[0].ratio if fits else 0.0
+        return [
+            fit for rank, fit in enumerate(fits) if rank < FINISHED or fit.ratio < near or not fit.explanation.variants
+        ]
+
+    def _finish(self, look: Fit) -> None:
+        self.progress(label(look.explanation))
+        self.add(look.explanation, look.values)
+
+
+def _preference(fit: Fit) -> tuple[int, bool, int, float]:
+    """Order among explanations that fit alike: least effects, a drift before a change, least numbers, then by fit."""
+    explanation = fit.explanation
+    return len(explanation.variants), explanation.changed is not None, len(explanation.names), fit.chi2
+
+
+def drifting(nominal: Model) -> tuple[str, ...]:
+    """Names of what may drift: the free base parameters, and the parameters of effects the actuator always has."""
+    own = tuple(f"{effect}.{name}" for effect, values in nominal.actuator.effects.items() for name in values)
+    return nominal.actuator.free + own
+
+
+def canonical(explanation: Explanation, order: Sequence[str]) -> Explanation | None:
+    """The same explanation in one order; None where a quantity stands twice."""
+    drifted = tuple(name for name in order if name in explanation.drifted)
+    effects = explanation.effects
+    always = {name.split(".")[0] for name in order if "." in name}
+    if len(drifted) < len(explanation.drifted) or len(set(effects)) < len(effects) or always & set(effects):
+        return None
+    if explanation.changed in drifted:
+        return None
+    variants = tuple(sorted(explanation.variants, key=lambda variant: variant.effect))
+    return Explanation(drifted, variants, explanation.changed)
+
+
+def label(explanation: Explanation) -> str:
+    """For people: what changes."""
+    change = (f"change of {explanation.changed}",) if explanation.changed else ()
+    return " + ".join((*explanation.drifted, *change, *(v.label for v in explanation.variants))) or "nominal"
+
+
+def repetition(fit: Fit) -> float:
+    """Samples that count as one: 1 + 2 sum of the positive autocorrelation of the residual, at least 1.
+
+    White residuals count in full; a residual with structure left counts by its independent stretches.
+    """
+    residual = fit.solution.residual
+    centred = residual - residual.mean()
+    size = 1 << int(np.ceil(np.log2(2 * centred.size)))
+    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
+    correlation = np.fft.irfft(spectrum, size)[: centred.size // 4]
+    correlation = correlation / max(float(correlation[0]), 1e-30)
+    negative = np.flatnonzero(correlation < 0.02)
+    last = int(negative[0]) if negative.size else correlation.size
+    return float(1.0 + 2.0 * correlation[1:last].sum())

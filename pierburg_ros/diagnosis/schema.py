@@ -1,0 +1,253 @@
+"""diagnosis.json, schema 1 (section 5 of the contract): every field with its unit; null where no number exists."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+Verdict = Literal["consistent", "parameter_drift", "missing_physics", "unexplained"]
+Status = Literal["chosen", "rejected", "tied", "not_testable"]
+
+
+def _existing(value: Any) -> Any:
+    """`value`, or None where it is not a finite number."""
+    return value if value is None or math.isfinite(value) else None
+
+
+def _existing_interval(value: Any) -> Any:
+    """Both ends of an interval, or None where one of them is not a finite number."""
+    if value is None or any(_existing(end) is None for end in value):
+        return None
+    return tuple(float(end) for end in value)
+
+
+Number = Annotated[float | None, BeforeValidator(_existing)]
+Interval = Annotated[tuple[float, float] | None, BeforeValidator(_existing_interval)]
+Tie = list[str]
+
+
+class Part(BaseModel):
+    """A part of the document: read-only, no fields but its own, no number that JSON lacks."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True, populate_by_name=True
+    )
+
+
+class Estimate(Part):
+    """One number of an effect."""
+
+    value: Number
+    """In `unit`."""
+    unit: str
+    ci95: Interval
+    """95 % confidence interval, in `unit`."""
+    identifiable: bool
+    """Whether these recordings determine the value."""
+
+
+class Effect(Part):
+    """A catalogue effect that the recordings need."""
+
+    id: str
+    """Name in the catalogue."""
+    confidence: Number
+    """0 to 1: how sure the effect is, against the explanations that were tried."""
+    parameters: dict[str, Estimate]
+    """By name in the catalogue."""
+    indistinguishable_from: list[Tie] = []
+    """Alternatives that fit as well, each a list of effect ids and parameter names."""
+    explanation: str
+    """Why, in words, with numbers."""
+
+
+class BaseParameter(Part):
+    """A parameter that every model of the actuator has."""
+
+    nominal: Number
+    """As the actuator is described, in `unit`."""
+    value: Number
+    """As the chosen explanation has it, in `unit`."""
+    unit: str
+    ci95: Interval
+    """95 % confidence interval, in `unit`."""
+    identifiable: bool
+    """Whether these recordings determine the value."""
+    drifted: bool
+    """Whether the chosen explanation changes it."""
+    indistinguishable_from: list[Tie] = []
+    """Alternatives that fit as well, each a list of effect ids and parameter names."""
+
+
+class Change(Part):
+    """A parameter that changed in the middle of a recording."""
+
+    parameter: str
+    time: float
+    """Moment of the change [s], from the first sample."""
+    before: float
+    """In the unit of the parameter."""
+    after: float
+    """In the unit of the parameter."""
+
+
+class Location(Part):
+    """A window of the first recording that holds much of the mismatch."""
+
+    start: float
+    """From the first sample [s]."""
+    end: float
+    """From the first sample [s]."""
+    share: float
+    """Of the residual energy of the recalibrated nominal model, 0 to 1."""
+    regime: str
+    """What the shaft does there."""
+
+
+class Regime(Part):
+    """A range of a variable in which the mismatch gathers."""
+
+    variable: str
+    range: tuple[float, float]
+    """Lowest and highest value, in `unit`."""
+    unit: str
+    share_of_residual: float
+    """Of the residual energy of the recalibrated nominal model, 0 to 1."""
+    share_of_time: float
+    """Of the recording, 0 to 1."""
+    chance: Number = None
+    """How often blocks of the residual in random order gather as much anywhere along the variable, 0 to 1."""
+
+
+class Errors(Part):
+    """Root mean squared error of three models on the same samples."""
+
+    nominal_rmse: Number
+    """Of the actuator as described, measured unit."""
+    recalibrated_rmse: Number
+    """With its base parameters re-estimated, measured unit."""
+    final_rmse: Number
+    """Of the written model, measured unit."""
+
+
+class FitQuality(Part):
+    """What the model gained, against what no model can remove."""
+
+    noise_floor: Number
+    """Standard deviation of the sensor noise, measured unit."""
+    training: Errors
+    """On the samples that were fitted."""
+    validation: Errors
+    """On samples that neither fit nor selection used."""
+
+
+class Candidate(Part):
+    """An explanation that was tried."""
+
+    id: str
+    """Effect ids and parameter names, joined by +; "nominal" for none."""
+    validation_rmse: Number
+    """Error on unseen samples, measured unit."""
+    evidence: Number
+    """What it gains in chi2 over the nominal model with its parameters re-estimated, in effective samples."""
+    status: Status
+
+
+class NotTestable(Part):
+    """An effect that these recordings cannot show."""
+
+    id: str
+    why: str
+    record: str
+    """What to record to see it."""
+
+
+class TorqueOverTime(Part):
+    """The missing torque over the first recording."""
+
+    time: list[float]
+    """Middle of each stretch, from the first sample [s]."""
+    torque: list[Number]
+    """Mean missing load torque while the shaft moves [N.m], positive closes; null where it does not move."""
+
+
+class ResidualTorque(Part):
+    """The load torque that no catalogue effect explains: bilinear between nodes, clamped at the edges."""
+
+    angle: list[float]
+    """Nodes [rad]."""
+    velocity: list[float]
+    """Nodes [rad/s]."""
+    torque: list[list[float]]
+    """At each angle (row) and velocity (column) [N.m], positive closes."""
+    shape: str = ""
+    """What it looks like over angle, velocity and time, in words."""
+    over_time: TorqueOverTime | None = None
+    """What the shape over angle and velocity leaves aside: the missing torque over time."""
+
+
+class DataQuality(Part):
+    """What the recordings are like."""
+
+    rate: float
+    """Median rate of the measured samples [Hz]."""
+    jitter: float
+    """Standard deviation of the sampling interval without gaps [s]."""
+    gaps: int
+    """Intervals longer than three median ones."""
+    saturated_share: float
+    """Share of time with the duty at -1 or 1."""
+    stops_touched: list[str]
+    """Of "closed" and "open"."""
+    resolution: Number = None
+    """Smallest step between measured values, measured unit."""
+    excited: str
+    """What was moved how far, in words."""
+    limits: list[str] = []
+    """What these recordings cannot tell for the way they were made, in words."""
+
+
+class Diagnosis(Part):
+    """The whole document."""
+
+    schema_number: Literal[1] = Field(1, alias="schema")
+    """Version of this layout; the key is `schema`."""
+    recordings: list[str]
+    """Names of the recordings."""
+    quantity: Literal["hall_voltage", "position"]
+    unit: Literal["V", "rad"]
+    """Measured unit."""
+    verdict: Verdict
+    summary: str
+    """One paragraph that a technician can read."""
+    effects: list[Effect] = []
+    parameters: dict[str, BaseParameter] = {}
+    changes: list[Change] = []
+    locations: list[Location] = Field([], max_length=20)
+    """Of the first recording, ranked."""
+    regimes: list[Regime] = []
+    """Of the first recording."""
+    fit: FitQuality
+    candidates: list[Candidate] = []
+    not_testable: list[NotTestable] = []
+    residual_torque: ResidualTorque | None = None
+    """Only with the verdict "unexplained"."""
+    data_quality: DataQuality
+    advice: list[str] = []
+    """What to record next to settle what these recordings cannot."""
+
+    def text(self) -> str:
+        """The document as JSON."""
+        return self.model_dump_json(indent=1, by_alias=True) + "\n"
+
+    def write(self, path: Path) -> None:
+        """Write the document to `path`."""
+        path.write_text(self.text(), encoding="utf-8")
+
+    @staticmethod
+    def read(path: Path) -> Diagnosis:
+        """The document at `path`."""
+        return Diagnosis.model_validate_json(path.read_text(encoding="utf-8"))

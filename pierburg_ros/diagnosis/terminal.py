@@ -1,0 +1,54 @@
+"""A diagnosis on the terminal: verdict, effects, drifts, errors, advice."""
+
+from __future__ import annotations
+
+from rich.console import Group
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from pierburg_ros.diagnosis.schema import Diagnosis
+
+
+def shown(diagnosis: Diagnosis) -> Group:
+    """What a terminal shows of a diagnosis."""
+    verdict = diagnosis.verdict.replace("_", " ")
+    parts: list[Panel | Table | Text] = [Panel(diagnosis.summary, title=verdict, expand=False)]
+    if diagnosis.effects or any(p.drifted for p in diagnosis.parameters.values()):
+        parts.append(_changed(diagnosis))
+    parts.append(_errors(diagnosis))
+    if diagnosis.locations:
+        places = "; ".join(f"{p.start:.1f} to {p.end:.1f} s ({p.regime})" for p in diagnosis.locations[:3])
+        parts.append(Text(f"Where: {places}"))
+    parts += [Text(f"Next: {step}") for step in diagnosis.advice[:3]]
+    return Group(*parts)
+
+
+def _changed(diagnosis: Diagnosis) -> Table:
+    table = Table("what", "value", "95 %", "cannot be told from")
+    for effect in diagnosis.effects:
+        ties = "; ".join(" with ".join(tie) for tie in effect.indistinguishable_from)
+        for name, estimate in effect.parameters.items():
+            table.add_row(f"{effect.id}.{name}", *_number(estimate.value, estimate.unit, estimate.ci95), ties)
+    for name, parameter in diagnosis.parameters.items():
+        if parameter.drifted:
+            ties = "; ".join(" with ".join(tie) for tie in parameter.indistinguishable_from)
+            table.add_row(name, *_number(parameter.value, parameter.unit, parameter.ci95), ties)
+    return table
+
+
+def _number(value: float | None, unit: str, interval: tuple[float, float] | None) -> tuple[str, str]:
+    shown_unit = "" if unit == "1" else f" {unit}"
+    return (
+        f"{value:.4g}{shown_unit}" if value is not None else "",
+        f"{interval[0]:.4g} to {interval[1]:.4g}" if interval else "",
+    )
+
+
+def _errors(diagnosis: Diagnosis) -> Table:
+    unit = diagnosis.unit
+    table = Table(f"RMSE [{unit}]", "nominal", "recalibrated", "final", "noise")
+    for label, errors in (("fitted data", diagnosis.fit.training), ("unseen data", diagnosis.fit.validation)):
+        row = (errors.nominal_rmse, errors.recalibrated_rmse, errors.final_rmse, diagnosis.fit.noise_floor)
+        table.add_row(label, *("" if value is None else f"{value:.4g}" for value in row))
+    return table

@@ -1,0 +1,68 @@
+"""From recordings to a verdict: nothing, a drift, a change, an effect, an effect behind a drift, a tie."""
+
+import numpy as np
+import pytest
+from recordings import NOMINAL, PIERBURG, recording
+
+from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
+from pierburg_ros.diagnosis.evidence_data import evidence_of
+from pierburg_ros.diagnosis.explanation import WHEN
+from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.identification.resimulation import inputs_of
+from pierburg_ros.plant import simulate_switched
+from pierburg_ros.recording import Channel, Recording
+
+
+def conclusion_on(changes: dict[str, float], seed: int = 0) -> Conclusion:
+    return conclude(Exploration(evidence_of([recording(changes, seed=seed)], PIERBURG), NOMINAL))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_nominal_valve_is_consistent(seed: int) -> None:
+    found = conclusion_on({}, seed=seed)
+    assert found.verdict == "consistent"
+    assert found.chosen.explanation.size == 0
+
+
+def test_a_drifted_resistance_is_a_drift_and_no_effect() -> None:
+    found = conclusion_on({"armature_resistance": 4.9})
+    assert found.verdict == "parameter_drift"
+    assert found.chosen.explanation.drifted == ("armature_resistance",)
+    assert found.chosen.values["armature_resistance"] == pytest.approx(4.9, rel=0.01)
+
+
+def test_stiction_is_named_with_its_values() -> None:
+    found = conclusion_on({"static_friction.breakaway_torque": 0.26, "static_friction.stribeck_velocity": 0.1})
+    assert found.verdict == "missing_physics"
+    assert found.chosen.explanation.effects == ("static_friction",)
+    assert found.chosen.values["static_friction.breakaway_torque"] == pytest.approx(0.26, rel=0.03)
+
+
+def test_an_effect_behind_a_drift_is_named() -> None:
+    found = conclusion_on({"sensor_lag.time_constant": 0.012, "spring_preload": 0.32})
+    assert found.verdict == "missing_physics"
+    assert found.chosen.explanation.effects == ("sensor_lag",)
+    assert found.chosen.explanation.drifted == ("spring_preload",)
+    estimate = found.estimates["sensor_lag.time_constant"]
+    assert estimate.low < 0.012 < estimate.high
+
+
+def test_viscous_friction_comes_with_its_exact_tie() -> None:
+    found = conclusion_on({"viscous_friction.coefficient": 0.03})
+    assert found.chosen.explanation.effects == ("viscous_friction",)
+    ties = {alternative.instead for alternative in found.alternatives}
+    assert ("armature_resistance", "torque_constant") in ties
+    assert ("armature_resistance", "supply_voltage") in ties
+
+
+def test_a_change_in_the_middle_is_dated() -> None:
+    plain = recording({})
+    after = NOMINAL.with_values({"armature_resistance": 4.9})
+    hall = simulate_switched(NOMINAL, after, 13.4, inputs_of(plain), plain.time)
+    noise = 0.003 * np.random.default_rng(7).standard_normal(hall.size)
+    duty = Channel(plain.time, plain.duty.values)
+    changed = Recording("changed.mcap", "hall_voltage", plain.time, hall + noise, duty)
+    found = conclude(Exploration(evidence_of([changed], PIERBURG), NOMINAL))
+    assert found.verdict == "parameter_drift"
+    assert found.chosen.explanation.changed == "armature_resistance"
+    assert found.chosen.values["armature_resistance" + WHEN] == pytest.approx(13.4, abs=0.3)
