@@ -1,0 +1,165 @@
+"""One trial from its draw to its score, each stage leaving files in the trial's folder.
+
+train.mcap                  what the diagnosis gets, under a name that says nothing
+truth.json, holdout.mcap    sealed by seal.json before the diagnosis starts
+diagnosis/                  what the diagnosis said
+result.json                 the score, and the versions of the sources it belongs to
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.identification.residual import compare
+from pierburg_ros.plant import Model
+from pierburg_ros.proof.bench import record
+from pierburg_ros.proof.formulation import simulate_textbook
+from pierburg_ros.proof.graph import record_over_graph
+from pierburg_ros.proof.score import Score, failed, score
+from pierburg_ros.proof.seal import SEAL, opened, seal
+from pierburg_ros.proof.trial import Trial, concealed_values, truth
+from pierburg_ros.proof.visibility import visibility
+from pierburg_ros.proof.windows import share_of_best
+from pierburg_ros.recording import read_recording
+
+DIAGNOSE = (sys.executable, "-c", "from pierburg_ros.cli.app import main; main()", "diagnose")
+"""The command as a process of its own; the recording and `--output DIR` follow."""
+LONGEST = 900.0  # s, after which a diagnosis counts as failed
+RESULT = "result.json"
+PACKAGE = Path(__file__).parents[1]
+DIAGNOSING = ("actuators", "diagnosis", "effects", "identification", "plant", "recording")
+"""Folders whose sources a diagnosis depends on."""
+Signal = NDArray[np.float64]
+
+
+def prepare(trial: Trial, folder: Path) -> None:
+    """Record the trial and seal its truth, unless that is done."""
+    if (folder / SEAL).exists():
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    if trial.over_graph:
+        run = record_over_graph(trial, folder / "train.mcap")
+        record_over_graph(trial, folder / "holdout.mcap", holdout=True)
+    else:
+        run = record(trial)
+        run.write(folder / "train.mcap")
+        record(trial, holdout=True).write(folder / "holdout.mcap")
+    seal(folder, finite({**truth(trial), "visibility": visibility(trial, run).label()}))
+
+
+def diagnose(folder: Path, command: Sequence[str] = DIAGNOSE) -> float:
+    """Diagnose the recording in a separate process that sees nothing else; gives the time it took [s]."""
+    with tempfile.TemporaryDirectory() as place:
+        recording = Path(place) / "recording.mcap"
+        shutil.copy(folder / "train.mcap", recording)
+        asked = [*command, str(recording), "--output", str(Path(place) / "diagnosis")]
+        environment = {**os.environ, "COLUMNS": "120"}
+        started = time.perf_counter()
+        try:
+            ended = subprocess.run(
+                asked,
+                cwd=place,
+                capture_output=True,
+                text=True,
+                timeout=LONGEST,
+                env=environment,
+                start_new_session=True,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise InputError(f"the diagnosis did not end within {LONGEST:.0f} s") from None
+        taken = time.perf_counter() - started
+        if ended.returncode != 0:
+            last = (ended.stderr.strip().splitlines() or ["no message"])[-1]
+            raise InputError(f"the diagnosis ended with status {ended.returncode}: {last}")
+        shutil.rmtree(folder / "diagnosis", ignore_errors=True)
+        shutil.move(Path(place) / "diagnosis", folder / "diagnosis")
+    return taken
+
+
+def judge(folder: Path) -> Score:
+    """Open the seal and score the diagnosis that lies in the folder."""
+    label = opened(folder)
+    diagnosis = json.loads((folder / "diagnosis" / "diagnosis.json").read_text())
+    windows = share_of_best(*effect_signal(label, folder), diagnosis.get("locations", []))
+    return score(label, diagnosis, windows, unseen_rmse(folder))
+
+
+def effect_signal(label: Mapping[str, Any], folder: Path) -> tuple[Signal, Signal]:
+    """Time [s] and what the concealed effect adds to the Hall voltage [V], drift being in both."""
+    recording = read_recording(folder / "train.mcap")
+    duty = recording.duty.at(recording.time, before=0.0)
+    effects, drifted = concealed_values(label)
+    with_effect, without = (
+        simulate_textbook(values, recording.time, duty) for values in ({**drifted, **effects}, drifted)
+    )
+    return recording.time, with_effect - without
+
+
+def unseen_rmse(folder: Path) -> float | None:
+    """RMSE of the diagnosed model on the unseen recording [V]; None where the diagnosis left no model."""
+    model = folder / "diagnosis" / "model.yaml"
+    if not model.exists():
+        return None
+    return float(compare(Model.read(model), read_recording(folder / "holdout.mcap")).rmse)
+
+
+def conduct(trial: Trial, folder: Path, version: str, command: Sequence[str] = DIAGNOSE) -> dict[str, Any]:
+    """Run one trial as far as it is not done, and give its result; `version` is that of the sources."""
+    done = result(folder, version)
+    if done is not None:
+        return done
+    prepare(trial, folder)
+    try:
+        taken = diagnose(folder, command)
+        scored = replace(judge(folder), seconds=taken)
+    except InputError as problem:
+        scored = failed(opened(folder), str(problem))
+    label: dict[str, Any] = finite({**scored.label(), "sources": version})
+    temporary = folder / f".{RESULT}"
+    temporary.write_text(json.dumps(label, indent=1))
+    temporary.replace(folder / RESULT)
+    return label
+
+
+def result(folder: Path, version: str) -> dict[str, Any] | None:
+    """The trial's result, if it was reached with this version of the sources."""
+    try:
+        label: dict[str, Any] = json.loads((folder / RESULT).read_text())
+    except FileNotFoundError:
+        return None
+    return label if label["sources"] == version else None
+
+
+def source_version(package: Path = PACKAGE) -> str:
+    """Digest of the sources that a diagnosis depends on."""
+    digest = hashlib.sha256()
+    for part in DIAGNOSING:
+        for file in sorted((package / part).rglob("*.py")):
+            digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def finite(value: Any) -> Any:
+    """The same content with null for every number that JSON cannot hold."""
+    if isinstance(value, Mapping):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,43 @@
+"""Which trials a run consists of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.proof.concealment import OVER_GRAPH, PUBLISHED, draw, draw_over_graph, schedule
+from pierburg_ros.proof.trial import Trial
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Trials of each kind, drawn from one seed, recorded in one process or over the ROS graph."""
+
+    counts: Mapping[str, int]
+    seed: int
+    over_graph: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of trials."""
+        return sum(self.counts.values())
+
+    @property
+    def names(self) -> list[tuple[str, int]]:
+        """Kind and number of every trial, in the order in which they are begun."""
+        return schedule(self.counts)
+
+    def trial(self, kind: str, number: int) -> Trial:
+        """One of the trials."""
+        return (draw_over_graph if self.over_graph else draw)(kind, number, self.seed)
+
+
+def planned(seed: int, trials: int | None = None, only: Sequence[str] = (), over_graph: bool = False) -> Plan:
+    """The published run, or `trials` of each kind; `only` some kinds."""
+    published = OVER_GRAPH if over_graph else PUBLISHED
+    for kind in only:
+        if kind not in published:
+            raise InputError(f"found kind {kind!r}, expected one of {', '.join(published)}.")
+    chosen = {kind: count for kind, count in published.items() if not only or kind in only}
+    return Plan(chosen if trials is None else dict.fromkeys(chosen, trials), seed, over_graph)

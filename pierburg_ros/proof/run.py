@@ -1,0 +1,86 @@
+"""Conducts a run of blind trials over all cores: resumable, and countable at any moment."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.proof.docket import DIAGNOSE, conduct, prepare, result, source_version
+from pierburg_ros.proof.plan import Plan
+from pierburg_ros.proof.trial import Trial
+
+RUN = "run.json"
+Report = Callable[[int, int, dict[str, Any] | None], None]
+"""Called with trials done, trials in all, and the last result."""
+
+
+def begin(output: Path, plan: Plan) -> None:
+    """Make the run's folder, or find it again; a folder of another seed is refused."""
+    if output.exists() and not output.is_dir():
+        raise InputError(f"{output} is a file, expected a folder for the run. Choose another --output.")
+    output.mkdir(parents=True, exist_ok=True)
+    note = output / RUN
+    if note.exists():
+        earlier = json.loads(note.read_text())["seed"]
+        if earlier != plan.seed:
+            raise InputError(f"{output} holds a run of seed {earlier}, not {plan.seed}. Choose another --output.")
+    note.write_text(json.dumps({"seed": plan.seed}))
+
+
+def folder_of(trial: Trial, output: Path) -> Path:
+    """Where a trial's files lie."""
+    return output / "trials" / trial.name
+
+
+def conduct_named(name: tuple[str, int], plan: Plan, output: Path, version: str, command: Sequence[str] | None) -> Any:
+    """Conduct a trial of the plan, or only prepare it; runs in a worker process."""
+    trial = plan.trial(*name)
+    folder = folder_of(trial, output)
+    return prepare(trial, folder) if command is None else conduct(trial, folder, version, command)
+
+
+def prove(
+    output: Path,
+    plan: Plan,
+    *,
+    workers: int | None = None,
+    command: Sequence[str] | None = DIAGNOSE,
+    report: Report = lambda done, total, last: None,
+) -> list[dict[str, Any]]:
+    """Conduct the trials that are missing and give the results; after an interrupt, those done by then.
+
+    Without a `command` to diagnose, the recordings are only made. Results belong to one version of the
+    sources: that at the start.
+    """
+    begin(output, plan)
+    version = source_version()
+    work = partial(conduct_named, plan=plan, output=output, version=version, command=command)
+    with ProcessPoolExecutor(workers or os.cpu_count(), initializer=finish_when_interrupted) as pool:
+        pending = [pool.submit(work, name) for name in plan.names]
+        try:
+            for done, future in enumerate(as_completed(pending), start=1):
+                report(done, len(pending), future.result())
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results(output, plan, version)
+
+
+def finish_when_interrupted() -> None:
+    """Leave an interrupt from the keyboard to the main process: a worker ends the trial under way first."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def results(output: Path, plan: Plan, version: str) -> list[dict[str, Any]]:
+    """Results of this version of the sources reached so far, in the order of the plan."""
+    found = (result(folder_of(plan.trial(*name), output), version) for name in plan.names)
+    return [label for label in found if label is not None]

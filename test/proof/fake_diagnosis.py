@@ -1,0 +1,16 @@
+"""Stands for `pierburg diagnose`: always answers that nothing is wrong, and counts how often it was asked."""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+recording, output = Path(sys.argv[-3]), Path(sys.argv[-1])
+with Path(os.environ["ASKED"]).open("a") as asked:
+    asked.write(f"{recording.name} {sorted(path.name for path in recording.parent.iterdir())}\n")
+if os.environ.get("DIAGNOSIS") == "fails":
+    sys.exit("cannot tell")
+output.mkdir()
+answer = {"verdict": "consistent", "effects": [], "parameters": {}, "locations": [], "fit": {}}
+(output / "diagnosis.json").write_text(json.dumps(answer))
+(output / "model.yaml").write_text("actuator: pierburg\n")

@@ -1,0 +1,54 @@
+"""`pierburg prove` from the command line: what it makes, what it prints, what it refuses."""
+
+from dataclasses import replace
+
+import pytest
+
+from pierburg_ros.cli import prove
+from pierburg_ros.cli.app import main
+from pierburg_ros.proof import plan
+from pierburg_ros.proof.concealment import draw
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Trials of a few seconds."""
+    monkeypatch.setattr(
+        plan, "draw", lambda *name: replace(draw(*name), duration=4.0, holdout_duration=2.0, rate=500.0)
+    )
+
+
+def test_recordings_without_diagnosis(tmp_path, capsys, short):
+    arguments = ["--trials", "1", "--only", "consistent", "--generate-only", "--workers", "1"]
+    with pytest.raises(SystemExit) as ending:
+        main(["prove", "--output", str(tmp_path / "run"), *arguments])
+    assert ending.value.code == 0
+    assert (tmp_path / "run" / "trials" / "consistent-000" / "truth.json").exists()
+    assert "sealed labels" in capsys.readouterr().out
+
+
+def test_an_unknown_kind_is_one_line_and_status_2(tmp_path, capsys):
+    with pytest.raises(SystemExit) as ending:
+        main(["prove", "--output", str(tmp_path / "run"), "--only", "rust"])
+    assert ending.value.code == 2
+    assert capsys.readouterr().err.startswith("pierburg: found kind 'rust', expected one of")
+    assert not (tmp_path / "run").exists()
+
+
+def test_the_progress_says_how_the_run_stands():
+    class Shown:
+        """Takes what a progress bar would show."""
+
+        def add_task(self, description, total):
+            self.total = total
+            return 0
+
+        def update(self, task, **shown):
+            self.shown = shown
+
+    shown = Shown()
+    reporter = prove.Reporter(shown, 3)
+    for done, right in ((1, True), (2, False)):
+        reporter(done, 3, {"right": right, "false_alarm": not right})
+    assert shown.total == 3
+    assert shown.shown == {"completed": 2, "total": 3, "description": "1 right, 1 false alarms"}
