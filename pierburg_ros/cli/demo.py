@@ -1,0 +1,133 @@
+"""`pierburg demo`: the whole story on a fresh machine, from a running graph to the physics a model lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console, Group
+from rich.table import Table
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.cli.diagnose import diagnosed_with_progress, write_diagnosis
+from pierburg_ros.cli.graph_experiment import play
+from pierburg_ros.cli.output import output_folder
+from pierburg_ros.cli.replay import summary, write_replay
+from pierburg_ros.cli.run import require_ros
+from pierburg_ros.control import Controller
+from pierburg_ros.diagnosis.terminal import shown
+from pierburg_ros.identification.residual import Comparison, compare
+from pierburg_ros.plant import Model, Plant
+from pierburg_ros.processes import own_graph, running
+from pierburg_ros.recording import read_recording
+
+SETPOINTS = (
+    (0.0, 0.0), (1.0, 0.35), (4.0, 0.87), (7.0, 1.22), (10.0, 0.61), (13.0, 1.05), (15.0, 1.12), (17.0, 0.98),
+    (19.0, 0.17), (21.0, 0.24), (23.0, 1.4), (26.0, 0.0), (28.0, 0.0),
+)  # fmt: skip
+"""Time [s] and setpoint [rad]: steps of 4 to 80 degrees both ways."""
+CONCEALED = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1, "spring_preload": 0.31}
+"""What the plant of the second run has and the model does not: stiction [N.m, rad/s], and a drifted spring [N.m]."""
+NOISE = 0.003
+"""Standard deviation of the simulated sensor's noise [V]; guess, 1.5 steps of a 12-bit converter."""
+REAL_RUNS = Path("../shared/data/xl330")
+
+
+def demo(
+    output: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("results/demo"),
+    real: Annotated[Path, typer.Option(help="Folder with measured runs of the XL330 bench.")] = REAL_RUNS,
+) -> None:
+    """Close a loop over ROS, record it, replay it; conceal an effect, record again, and have it diagnosed.
+
+    The first run is replayed against the true model, measured runs of a real bench against a simple one. In the
+    second run the plant sticks and its spring has drifted; the diagnosis sees the recording alone.
+    """
+    require_ros()
+    console = Console()
+    with output_folder(output) as folder:
+        recording = recorded_run(folder, "demo.mcap", {}, False, console)
+        console.print(replayed(folder, recording, Model.nominal(read_actuator("pierburg"))))
+        console.print(diagnosed(folder / "diagnosis", recorded_run(folder, "concealed.mcap", CONCEALED, True, console)))
+        runs = sorted(real.glob("*.mcap"))
+        if runs:
+            console.print(replayed_bench(folder / "xl330", runs))
+        else:
+            console.print(f"No measured runs in {real}; name a folder with --real to replay them too.")
+    console.print(f"Results in {output}: replay.html (the loop), diagnosis/report.html (the concealed effect).")
+
+
+def recorded_run(
+    folder: Path, name: str, physics: Mapping[str, float], simulated_time: bool, console: Console
+) -> Path:
+    """The recording of a closed loop: plant, controller and recorder as processes, setpoints sent from outside.
+
+    `physics` are values of the plant's parameters that differ from the nominal ones. In simulated time plant and
+    controller wait for each other, so that a busy machine loses no tick.
+    """
+    setpoints, recording = folder / "setpoints.csv", folder / name
+    rows = [f"{time},{setpoint}" for time, setpoint in SETPOINTS]
+    setpoints.write_text("\n".join(["time,setpoint", *rows]) + "\n")
+    environment = own_graph()
+    pace = {"simulated_time": True, "lockstep": True} if simulated_time else {}
+    nodes: dict[str, dict[str, object]] = {
+        "plant": {"hall_voltage_noise": NOISE, **pace, **physics},
+        "controller": {"use_sim_time": simulated_time, **({"hall_timeout": 0.0} if simulated_time else {})},
+    }
+    with console.status("compiling simulator and controller, once on a machine"):
+        compile_kernels()
+    console.print(
+        f"Plant, controller and recorder run over DDS for {SETPOINTS[-1][0]:.0f} s of"
+        f" {'simulated' if simulated_time else 'wall'} time"
+        f" (ROS_DOMAIN_ID={environment['ROS_DOMAIN_ID']})."
+    )
+    with running(nodes, folder / "nodes.log", environment):
+        play("setpoint", setpoints, recording, simulated_time, environment)
+    return recording
+
+
+def compile_kernels() -> None:
+    """Have the kernels of the nodes in the cache, so that no node has to compile while others wait for it."""
+    Plant(Model.nominal(read_actuator("pierburg"))).advance(0.0, 0.002)
+    controller = Controller()
+    controller.step(0.0, 0.42, 0.002)
+    controller.change(controller.settings)
+
+
+def diagnosed(folder: Path, recording: Path) -> Group:
+    """Diagnose a recording as a user would, with nothing but its path, and give what a terminal shows."""
+    result = diagnosed_with_progress([read_recording(recording)], read_actuator("pierburg"))
+    folder.mkdir()
+    write_diagnosis(folder, result)
+    return Group(f"{recording.name} and nothing else, diagnosed:", shown(result.diagnosis))
+
+
+def replayed(folder: Path, recording: Path, model: Model) -> Table:
+    """Write the files of a replay and give its summary."""
+    comparison = compare(model, read_recording(recording))
+    write_replay(folder, comparison)
+    return summary(comparison)
+
+
+def replayed_bench(folder: Path, runs: list[Path]) -> Table:
+    """Replay measured runs of the pendulum bench against its Coulomb-and-viscous model, one row each."""
+    model = Model.nominal(read_actuator("xl330"))
+    table = Table(title=f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
+    for heading in ("run", "RMSE [rad]", "variance explained", "worst stretch [s]"):
+        table.add_column(heading, justify="left" if heading == "run" else "right")
+    for run in runs:
+        comparison = compare(model, read_recording(run))
+        target = folder / run.stem
+        target.mkdir(parents=True)
+        write_replay(target, comparison)
+        table.add_row(*bench_row(run, comparison))
+    return table
+
+
+def bench_row(run: Path, comparison: Comparison) -> tuple[str, ...]:
+    """One row of the table of measured runs."""
+    explained = comparison.variance_explained
+    share = "nothing moved" if explained is None else f"{100 * explained:.1f} %"
+    stretch = f"{comparison.worst.start:.2f} to {comparison.worst.end:.2f}"
+    return run.stem, f"{comparison.rmse:.3f}", share, stretch

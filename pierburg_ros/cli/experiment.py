@@ -1,0 +1,156 @@
+"""`pierburg experiment`: excitation recipes, and the sequence that best separates two explanations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from pierburg_ros.cli.graph_experiment import play
+from pierburg_ros.cli.identify import starting_model
+from pierburg_ros.cli.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.output import output_folder
+from pierburg_ros.cli.run import require_ros
+from pierburg_ros.closed_loop import simulate_loop
+from pierburg_ros.control import Schedule, Settings
+from pierburg_ros.errors import InputError
+from pierburg_ros.identification.discriminate import discriminate as design_sequence
+from pierburg_ros.identification.discriminate_report import words, write_picture
+from pierburg_ros.identification.excitation import (
+    DURATION,
+    DUTY_RECIPES,
+    duty_sequence,
+    purpose,
+    setpoint_sequence,
+)
+from pierburg_ros.identification.explanations import explanation
+from pierburg_ros.identification.synthetic import Signal, synthetic_recording
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Channel
+from pierburg_ros.recording.write import write_simulated
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """What is played: `kind` duty or setpoint, its name, and its value at each `time` [s]."""
+
+    kind: str
+    name: str
+    time: Signal
+    values: Signal
+
+    @property
+    def changes(self) -> Channel:
+        """The sequence as its changes."""
+        keep = np.concatenate([[True], np.diff(self.values) != 0.0])
+        return Channel(self.time[keep], self.values[keep])
+
+
+def experiment(
+    name: Annotated[str | None, typer.Argument(help="Recipe; a wrong name lists them.")] = None,
+    output: Annotated[Path | None, typer.Option(help="Folder for the sequence and its recording.")] = None,
+    discriminate: Annotated[
+        tuple[str, str] | None,
+        typer.Option(help="Design the sequence that best separates two effects or model files; or nominal."),
+    ] = None,
+    model: ModelOption = None,
+    actuator: ActuatorOption = None,
+    duration: Annotated[float | None, typer.Option(min=5.0, max=3600.0, help="Length [s].")] = None,
+    rate: Annotated[float, typer.Option(min=20.0, max=5000.0, help="Samples a second.")] = 500.0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of random levels and of the noise.")] = 0,
+    noise: Annotated[float, typer.Option(min=0.0, max=1.0, help="Sensor noise, RMS.")] = 0.003,
+    limit: Annotated[float, typer.Option(min=0.01, max=1.0, help="Largest duty.")] = 1.0,
+    graph: Annotated[bool, typer.Option("--graph", help="Play it to a plant on the ROS graph, and record.")] = False,
+    simulated_time: Annotated[bool, typer.Option("--simulated-time", help="The graph runs on /clock.")] = False,
+) -> None:
+    """Record an excitation recipe, of the simulated actuator or over the ROS graph.
+
+    Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence
+    first, explains it, and records it only with --graph, or simulated when a --model is given.
+    """
+    if (name is None) == (discriminate is None) or output is None:
+        raise InputError(
+            "experiment found not both a recipe (or --discriminate A B) and --output, expected both. Write"
+            " pierburg experiment rich --output DIR."
+        )
+    if graph:
+        require_ros()
+    base, console = starting_model(model, actuator), Console()
+    with output_folder(output) as folder:
+        if discriminate is not None:
+            chosen = designed(folder, console, base, discriminate, duration or 60.0, rate, noise, limit)
+        else:
+            chosen = recipe(str(name), base, duration, rate, seed, limit)
+        file = write_sequence(folder, chosen)
+        recording = folder / f"{chosen.name}.mcap"
+        if graph:
+            with Console(stderr=True).status(f"playing {chosen.name}, {chosen.time[-1]:.0f} s"):
+                play(chosen.kind, file, recording, simulated_time)
+        elif discriminate is None or model is not None:
+            simulate_sequence(recording, base, chosen, rate, noise, seed)
+    made = [path.name for path in (file, recording) if (output / path.name).exists()]
+    console.print(f"{chosen.name}, {chosen.time[-1]:.0f} s, in {output}: {', '.join(made)}", soft_wrap=True)
+
+
+def recipe(name: str, base: Model, duration: float | None, rate: float, seed: int, limit: float) -> Sequence:
+    """The sequence of recipe `name`."""
+    purpose(name)
+    length = duration or DURATION.get(name, 60.0)
+    time = np.arange(round(length * rate) + 1) / rate
+    if name in DUTY_RECIPES:
+        return Sequence("duty", name, time, np.clip(duty_sequence(name, base, time, seed), -limit, limit))
+    if base.actuator.quantity != "hall_voltage":
+        raise InputError(
+            f"Recipe {name} needs the controller, which needs a Hall voltage, and {base.actuator.name} gives"
+            f" its angle. Choose one of {', '.join(DUTY_RECIPES)}."
+        )
+    return Sequence("setpoint", name, time, setpoint_sequence(name, time, seed))
+
+
+def designed(
+    folder: Path,
+    console: Console,
+    base: Model,
+    names: tuple[str, str],
+    duration: float,
+    rate: float,
+    noise: float,
+    limit: float,
+) -> Sequence:
+    """The sequence that best separates the explanations `names`, explained in words and a picture."""
+    first, second = (explanation(name, base, duration) for name in names)
+    with Console(stderr=True).status("designing the sequence") as status:
+        design = design_sequence(first, second, duration, rate, noise or 1e-6, limit, status.update)
+    labels = (Path(names[0]).stem, Path(names[1]).stem)
+    text = words(design, labels, base.actuator.unit, noise)
+    (folder / "explanation.txt").write_text(text + "\n", encoding="utf-8")
+    write_picture(folder / "prediction.png", design, labels, base.actuator.quantity)
+    console.print(text, highlight=False, soft_wrap=True)
+    return Sequence("duty", "discriminate", design.time, design.duty)
+
+
+def write_sequence(folder: Path, sequence: Sequence) -> Path:
+    """Write the changes of the sequence, and its end, to duty.csv or setpoints.csv."""
+    changes = sequence.changes
+    path = folder / ("duty.csv" if sequence.kind == "duty" else "setpoints.csv")
+    rows = [*zip(changes.time, changes.values, strict=True)]
+    if changes.time[-1] < sequence.time[-1]:
+        rows.append((sequence.time[-1], sequence.values[-1]))
+    np.savetxt(path, rows, fmt="%.6g", delimiter=",", header=f"time,{sequence.kind}", comments="")
+    return path
+
+
+def simulate_sequence(path: Path, model: Model, sequence: Sequence, rate: float, noise: float, seed: int) -> None:
+    """Write the recording that a bench with the actuator of `model` would make."""
+    if sequence.kind == "duty":
+        made = synthetic_recording(model, sequence.time, sequence.values, noise, seed)
+        write_simulated(path, made.time, made.duty, made.measured, quantity=made.quantity)
+        return
+    changes = sequence.changes
+    schedule = Schedule(changes.time, changes.values)
+    run = simulate_loop(model, Settings(), schedule, sequence.time[-1], rate, noise, seed)
+    write_simulated(path, run.time, run.duty, run.hall_voltage, setpoints=changes)

@@ -1,0 +1,87 @@
+"""`pierburg prove`: seeded blind trials of the diagnosis."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+
+from pierburg_ros.cli.run import require_ros
+from pierburg_ros.proof import document, run
+from pierburg_ros.proof.docket import DIAGNOSE
+from pierburg_ros.proof.plan import planned
+
+
+def prove(
+    output: Annotated[Path, typer.Option(help="Folder for trials and results; an earlier run there goes on.")],
+    trials: Annotated[int | None, typer.Option(min=1, help="Trials of each kind in place of the full run.")] = None,
+    only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
+    workers: Annotated[int | None, typer.Option(min=1, help="Trials at a time; default: cores.")] = None,
+    generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
+    over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
+    docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
+) -> None:
+    """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
+
+    Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
+    simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
+    reports what is done; called again, it goes on.
+    """
+    plan = planned(seed, trials, only or [], over_graph)
+    if over_graph:
+        require_ros()
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    ) as progress:
+        reporter = Reporter(progress, plan.size)
+        command = None if generate_only else DIAGNOSE
+        results = run.prove(output, plan, workers=workers, command=command, report=reporter)
+    if generate_only:
+        Console().print(f"Recordings with their sealed labels in {output / 'trials'}")
+        return
+    done = document.Run(results, plan)
+    document.write(done, output, docs)
+    Console().print(summary(done), f"Results in {output}: proof.md, results.json")
+
+
+class Reporter:
+    """Shows how far a run is, and how it stands."""
+
+    def __init__(self, progress: Progress, total: int) -> None:
+        self.progress = progress
+        self.task = progress.add_task("blind trials", total=total)
+        self.right = self.alarms = 0
+
+    def __call__(self, done: int, total: int, last: dict[str, Any] | None) -> None:
+        if last is not None:
+            self.right += last["right"]
+            self.alarms += last["false_alarm"]
+        description = f"{self.right} right, {self.alarms} false alarms" if last is not None else "recording"
+        self.progress.update(self.task, completed=done, total=total, description=description)
+
+
+def summary(done: document.Run) -> Table:
+    """The headline figures."""
+    table = Table(title=f"Blind trials, n = {len(done.results)} of {done.plan.size}", title_justify="left")
+    table.add_column("figure")
+    table.add_column("count (95 % Wilson interval)")
+    for name, share in document.headline(done).items():
+        table.add_row(name, str(share))
+    return table

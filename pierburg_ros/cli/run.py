@@ -1,0 +1,38 @@
+"""`pierburg run`: the nodes for those without `ros2 run`."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Annotated
+
+import typer
+
+from pierburg_ros.errors import InputError
+
+NODES = ("plant", "controller", "recorder")
+
+
+def run(
+    context: typer.Context,
+    node: Annotated[str, typer.Argument(help=f"One of {', '.join(NODES)}; --ros-args and more may follow.")],
+) -> None:
+    """Start a node; it runs until SIGINT or SIGTERM.
+
+    Everything behind the node's name goes to ROS, as in: pierburg run plant --ros-args -p rate:=1000.0
+    """
+    if node not in NODES:
+        raise InputError(f"There is no node {node!r}; expected one of {', '.join(NODES)}.")
+    require_ros()
+    sys.argv = [node, *context.args]
+    import_module(f"pierburg_ros.nodes.{node}").main()
+
+
+def require_ros() -> None:
+    """InputError where the ROS client library is not installed."""
+    if find_spec("rclpy") is None:
+        raise InputError(
+            "ROS 2 was not found (no module rclpy). Install its wheels with pip install 'pierburg_ros[ros]', "
+            "or source an installed ROS 2 Jazzy."
+        )

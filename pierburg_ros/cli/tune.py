@@ -1,0 +1,118 @@
+"""`pierburg tune`: PIFLC gains and sets for a stated goal over a set of plants."""
+
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from pierburg_ros.closed_loop.designs import DESIGNS
+from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
+from pierburg_ros.closed_loop.judgement import Judgement, judge
+from pierburg_ros.closed_loop.plants import plant_set
+from pierburg_ros.closed_loop.report import insert, report
+from pierburg_ros.closed_loop.tune import STATED, Task
+from pierburg_ros.closed_loop.tune import tune as find_settings
+from pierburg_ros.control import parameter_file
+from pierburg_ros.errors import InputError
+
+
+def tune(
+    output: Annotated[Path, typer.Option(help="ROS parameter file to write.")],
+    settling: Annotated[
+        float, typer.Option(min=1.0, max=100.0, help="Goal: settling time over the time-optimal bound.")
+    ] = 2.0,
+    overshoot: Annotated[float, typer.Option(min=0.1, max=100.0, help="Goal: overshoot in percent.")] = 2.0,
+    steady_state_error: Annotated[
+        float, typer.Option(min=0.01, max=90.0, help="Goal: error at standstill, in degrees.")
+    ] = 0.3,
+    hunting: Annotated[
+        float, typer.Option(min=0.01, max=90.0, help="Goal: peak to peak at standstill, in degrees.")
+    ] = 0.15,
+    generations: Annotated[int, typer.Option(min=0, max=10000, help="Generations of the search.")] = 50,
+    members: Annotated[int, typer.Option(min=4, max=1000, help="Candidates in each generation.")] = 20,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
+    compare: Annotated[
+        Path | None,
+        typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
+    ] = None,
+) -> None:
+    """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue."""
+    for path in (output, compare):
+        if path is not None and path.is_dir():
+            raise InputError(f"{path} is a folder, expected a file. Name the file to write.")
+    goal = Goal(settling, overshoot / 100.0, math.radians(steady_state_error), math.radians(hunting))
+    plants = plant_set()
+    names = ["PIFLC"] if compare is None else list(DESIGNS)
+    judgements = []
+    for name in names:
+        task = Task(DESIGNS[name], goal, plants)
+        judgements.append(tuned(task, generations, members, seed))
+    write_whole(output, parameter_file(judgements[0].settings, heading(goal, judgements[0])))
+    if compare is not None:
+        document = compare.read_text(encoding="utf-8") if compare.exists() else ""
+        write_whole(compare, insert(document, report(goal, judgements)))
+    Console().print(summary(goal, judgements), f"Parameters in {output}")
+
+
+def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
+    """Tune one controller and judge it, with progress on stderr."""
+    shown = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[state]}"),
+    )
+    with Progress(*shown, console=Console(stderr=True)) as progress:
+        name = task.design.name
+        searching = progress.add_task(f"{name}: searching", total=generations, state="")
+        judging = progress.add_task(f"{name}: judging", total=len(task.plants), state="")
+
+        def searched(best: float) -> None:
+            progress.update(searching, advance=1, state=f"cost {best:.3f}")
+
+        settings = find_settings(task, generations, members, seed, searched)
+        return judge(task.design, settings, task.plants, lambda: progress.advance(judging))
+
+
+def heading(goal: Goal, judgement: Judgement) -> list[str]:
+    """What the parameter file says of itself."""
+    lines = ["Tuned by `pierburg tune` on simulated plants; not validated on a real valve."]
+    for plant in STATED:
+        shares = judgement.shares(plant, goal).max(axis=0)
+        told = ", ".join(f"{name} {share:.2f}" for name, share in zip(QUANTITIES, shares, strict=True))
+        lines.append(f"{plant}, worst step as a share of the goal: {told}")
+    return [line.replace("_", " ") for line in lines]
+
+
+def summary(goal: Goal, judgements: Sequence[Judgement]) -> Table:
+    """Worst step on the plants with stated goals, as shares of the goals."""
+    table = Table(title="Median of the worst step as a share of the goal")
+    for title in ("plant", "controller", *QUANTITIES):
+        table.add_column(title.replace("_", " "))
+    for plant in STATED:
+        for each in judgements:
+            shares = each.shares(plant, goal).max(axis=0)
+            table.add_row(plant, each.name, *(f"{share:.2f}" for share in shares))
+    return table
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file at once, or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
