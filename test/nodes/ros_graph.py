@@ -21,6 +21,8 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 STOP = signal.SIGINT
 DEADLINE = 180.0
 """Longest wait for anything [s]; generous, for a machine that does much else."""
+LEAVE = 10.0
+"""Longest wait for nodes to end, and for the graph to forget them [s]."""
 
 
 class Graph:
@@ -130,11 +132,23 @@ class Graph:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Stop every process that is left and leave the graph."""
-        for process in self._processes:
-            if process.poll() is None:
+        """Stop every process that is left and leave the graph.
+
+        Nodes that end take leave over DDS. Their leaves are waited for: Fast DDS has crashed on one that arrived
+        while the observer itself was being taken down.
+        """
+        running = [process for process in self._processes if process.poll() is None]
+        for process in running:
+            process.send_signal(STOP)
+        for process in running:
+            try:
+                process.communicate(timeout=LEAVE)
+            except subprocess.TimeoutExpired:
                 process.kill()
                 process.communicate()
+        end = time.monotonic() + LEAVE
+        while set(self.node.get_node_names()) - {self.node.get_name()} and time.monotonic() < end:
+            self._executor.spin_once(timeout_sec=0.05)
         self._executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self._context)
