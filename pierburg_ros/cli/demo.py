@@ -97,7 +97,7 @@ def compile_kernels() -> None:
 
 def diagnosed(folder: Path, recording: Path) -> Group:
     """Diagnose a recording as a user would, with nothing but its path, and give what a terminal shows."""
-    result = diagnosed_with_progress([read_recording(recording)], read_actuator("pierburg"))
+    result = diagnosed_with_progress([read_recording(recording)], Model.nominal(read_actuator("pierburg")))
     folder.mkdir()
     write_diagnosis(folder, result)
     return Group(f"{recording.name} and nothing else, diagnosed:", shown(result.diagnosis))

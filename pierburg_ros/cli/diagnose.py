@@ -10,20 +10,22 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from pierburg_ros.actuators import Actuator, read_actuator
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
 from pierburg_ros.diagnosis.diagnose import Result
 from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
 from pierburg_ros.diagnosis.report import write_page, write_picture
 from pierburg_ros.diagnosis.terminal import shown
+from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 
 
 def diagnose(
     recordings: Annotated[list[Path], typer.Argument(help="MCAP, rosbag2 directories or CSV, of one actuator.")],
     output: Annotated[Path, typer.Option(help="Folder for the results.")],
-    actuator: Annotated[str, typer.Option(help="pierburg, xl330 or a description of your own.")] = "pierburg",
+    actuator: ActuatorOption = None,
+    model: ModelOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
 ) -> None:
@@ -31,21 +33,21 @@ def diagnose(
 
     Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
     """
-    described = read_actuator(actuator)
+    nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = [read_recording(path, time=time, topics=topics_of(topic)) for path in recordings]
     with output_folder(output) as folder:
-        result = diagnosed_with_progress(measured, described)
+        result = diagnosed_with_progress(measured, nominal)
         write_diagnosis(folder, result)
     Console().print(
         shown(result.diagnosis), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
     )
 
 
-def diagnosed_with_progress(recordings: Sequence[Recording], actuator: Actuator) -> Result:
-    """The diagnosis, with a bar on stderr that names what is being tried."""
+def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model) -> Result:
+    """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
         task = bar.add_task("reading", total=None)
-        return diagnosis_of(recordings, actuator, lambda tried: bar.update(task, advance=1, description=tried))
+        return diagnosis_of(recordings, nominal, lambda tried: bar.update(task, advance=1, description=tried))
 
 
 def write_diagnosis(folder: Path, result: Result) -> None:

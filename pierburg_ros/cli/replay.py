@@ -11,13 +11,11 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from pierburg_ros.actuators import read_actuator
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
-from pierburg_ros.errors import InputError
 from pierburg_ros.identification.residual import Comparison, compare
 from pierburg_ros.identification.residual_plot import write_page, write_picture
-from pierburg_ros.plant import Model
 from pierburg_ros.recording import read_recording, write_recording
 from pierburg_ros.recording.write import Signal
 
@@ -27,10 +25,8 @@ FLOAT64 = "std_msgs/msg/Float64"
 def replay(
     recording: Annotated[Path, typer.Argument(help="MCAP, rosbag2 directory or CSV.")],
     output: Annotated[Path, typer.Option(help="Folder for the results.")],
-    model: Annotated[Path | None, typer.Option(help="Model file to simulate with.")] = None,
-    actuator: Annotated[
-        str | None, typer.Option(help="Actuator to simulate with: pierburg, xl330 or a file of your own.")
-    ] = None,
+    model: ModelOption = None,
+    actuator: ActuatorOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
 ) -> None:
@@ -44,16 +40,6 @@ def replay(
         comparison = compare(chosen, measured)
         write_replay(folder, comparison)
     Console().print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
-
-
-def chosen_model(model: Path | None, actuator: str | None) -> Model:
-    """The model of the file `model`, or the nominal one of `actuator`."""
-    described = read_actuator(actuator) if actuator is not None else None
-    if model is not None:
-        return Model.read(model, described)
-    if described is None:
-        raise InputError("replay found neither --model nor --actuator, expected one of them. Add --actuator pierburg.")
-    return Model.nominal(described)
 
 
 def write_replay(folder: Path, comparison: Comparison) -> None:

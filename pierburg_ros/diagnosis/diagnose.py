@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis import audit, findings
 from pierburg_ros.diagnosis.across import select
 from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
@@ -44,17 +43,16 @@ class Result:
 
 def diagnose(
     recordings: Sequence[Recording],
-    actuator: Actuator,
+    nominal: Model,
     progress: Progress = lambda _: None,
-    nominal: Model | None = None,
 ) -> Result:
-    """Locate, name and model what `nominal` (the actuator as described) lacks, from recordings alone.
+    """Locate, name and model what `nominal` lacks, from recordings alone.
 
     `progress` is told what is being tried. InputError where the recordings cannot be used.
     """
     audit.refuse_unusable(recordings)
-    data = evidence_of(recordings, actuator)
-    exploration = Exploration(data, nominal or Model.nominal(actuator), progress)
+    exploration = Exploration(evidence_of(recordings, nominal.actuator), nominal, progress)
+    data = exploration.data
     conclusion = conclude(exploration)
     shape = None
     if conclusion.verdict == "unexplained":
@@ -76,9 +74,12 @@ def _beyond_the_catalogue(
     base = conclusion.recalibrated
     if len(data.runs) > 1:
         base = select(exploration, base).fit
+    shape = fit_shape(data, base.model, progress, rivals=[conclusion.nominal.model])
+    confirmed = shape.after < CONFIRMED * shape.before
+    if confirmed and shape.base is conclusion.nominal.model:
+        base = conclusion.nominal
     reopened = replace(conclusion, chosen=base, alternatives=[], estimates=estimates(exploration.search, base))
-    shape = fit_shape(data, base.model, progress)
-    return reopened, shape if shape.after < CONFIRMED * shape.before else None
+    return reopened, shape if confirmed else None
 
 
 def _document(

@@ -13,6 +13,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.identification.resimulation import Start, inputs_of
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
 
@@ -119,23 +120,3 @@ def training_blocks(time: Signal) -> NDArray[np.bool_]:
     length = min(BLOCK, (time[-1] - time[0]) / (2 * JUDGING))
     block = np.floor((time - time[0]) / length).astype(int)
     return np.asarray(block % JUDGING != JUDGING - 2)
-
-
-def noise_of(time: Signal, measured: Signal) -> float:
-    """Standard deviation of the white part of a smooth signal, same unit, from its third differences.
-
-    The third difference of white noise has 20 times its variance. Differences across gaps are left out, and of
-    the others the largest tenth, where the signal has kinks, which takes 38 % off the variance of a normal
-    distribution. Never less than the rounding to the smallest step between values, step / sqrt(12).
-    """
-    interval = np.diff(time)
-    regular = interval < 1.5 * np.median(interval)
-    together = regular[:-2] & regular[1:-1] & regular[2:]
-    differences = np.abs(np.diff(measured, 3)[together])
-    deviation = 0.0
-    if differences.size:
-        kept = differences[differences <= np.quantile(differences, 0.9)]
-        deviation = float(np.sqrt(np.mean(np.square(kept)) / (20.0 * 0.623)))
-    values = np.unique(measured)
-    step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
-    return float(max(deviation, step / np.sqrt(12.0), 1e-9))

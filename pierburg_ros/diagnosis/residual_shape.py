@@ -47,7 +47,7 @@ class Shape:
     """A model with its residual torque, and what that gains on samples that did not train it.
 
     `base` is the model without it. `before` and `after` are RMSE over whole runs, on the judging samples, of the
-    model that was asked about and of the shaped one, measured unit. `over_time` holds the middle [s] of each
+    best model without a shape and of the shaped one, measured unit. `over_time` holds the middle [s] of each
     stretch of the first recording and the mean torque [N.m] that the base lacks there, not a number at rest.
     """
 
@@ -87,7 +87,8 @@ def fit_shape(
     grid = best.model.residual_torque or {}
     over_time = _over_time(data, best.base)
     words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
-    return Shape(best.model, best.base, _judged(data, model), _judged(data, best.model), words, over_time)
+    before = min(_judged(data, candidate.base) for candidate in fitted)
+    return Shape(best.model, best.base, before, _judged(data, best.model), words, over_time)
 
 
 def _fitted(data: EvidenceData, base: Model) -> _Fitted:

@@ -90,7 +90,7 @@ def advice(
     limits: Sequence[Limit],
 ) -> list[str]:
     """What to record next, most useful first."""
-    steps = [limit.finding for limit in limits]
+    steps = [limit.record for limit in limits]
     for effect in effects:
         for tie in effect.indistinguishable_from:
             steps.append(_separating(effect.id, tie))

@@ -12,10 +12,10 @@ from scipy import optimize
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.problem import COARSE_STEP, FINE_STEP, Problem
-from pierburg_ros.identification.resimulation import noise_scale
 from pierburg_ros.identification.scaling import Scaling
 from pierburg_ros.identification.uncertainty import RANK, Uncertainty, uncertainty
 from pierburg_ros.plant import Model
+from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -110,7 +110,7 @@ def fit(
     if not free:
         raise InputError("There is no free parameter to fit; expected one or more. Free one.")
     problem = Problem(recordings, Scaling.of(model, free), threads)
-    noise = float(np.sqrt(np.mean([noise_scale(recording.measured) ** 2 for recording in recordings])))
+    noise = float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings])))
     goal = GOOD * noise * np.sqrt(problem.measured.size)
     best = _descend(problem, np.zeros(len(free)), tolerance, simplex)
     for start in _further_starts(problem, starts - 1, seed):

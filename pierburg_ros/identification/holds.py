@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.identification.resimulation import noise_scale, scale_of
+from pierburg_ros.identification.resimulation import scale_of
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
 SHORTEST = 0.4
@@ -117,7 +118,7 @@ def settled(found: list[Hold]) -> tuple[list[Settled], float]:
 
 def angle_noise(recording: Recording, actuator: Actuator) -> float:
     """Sensor noise [rad]."""
-    return noise_scale(angle_of(recording, actuator))
+    return noise_of(recording.time, angle_of(recording, actuator))
 
 
 def _gram(hold: Hold, constant: float) -> Signal:

@@ -13,7 +13,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.identification.fit import Fit, fit
 from pierburg_ros.identification.identifiability import Finding, identifiability
 from pierburg_ros.identification.lumps import Lump, fitted_duties, fitted_lumps
-from pierburg_ros.identification.resimulation import noise_scale, resimulate
+from pierburg_ros.identification.resimulation import resimulate
 from pierburg_ros.identification.static_characteristic import (
     StaticCharacteristic,
     static_characteristic,
@@ -21,6 +21,7 @@ from pierburg_ros.identification.static_characteristic import (
 from pierburg_ros.identification.step_response import StepResponse, step_response
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
 
 HELD = ("supply_voltage", "spring_stiffness", "gravity_torque")
 """Held unless freed: the supply can be measured, and duty and angle leave the scale of all torques open."""
@@ -100,7 +101,7 @@ def identify(
         static,
         step_response(recordings, model.actuator, static, supply) if spring else None,
         validation_rmse(fitted.model, recordings, names),
-        float(np.sqrt(np.mean([noise_scale(recording.measured) ** 2 for recording in recordings]))),
+        float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings]))),
     )
 
 
@@ -123,7 +124,7 @@ def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()
 
 def refuse_unmoved(recording: Recording) -> None:
     """InputError where the shaft does not move or the recording is too short to identify anything."""
-    noise = noise_scale(recording.measured)
+    noise = noise_of(recording.time, recording.measured)
     middle = np.percentile(recording.measured, [1.0, 99.0])
     if recording.time.size < 100 or middle[1] - middle[0] < 20.0 * noise or np.ptp(recording.measured) == 0.0:
         raise InputError(

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.resimulation import noise_scale, resimulate
+from pierburg_ros.identification.resimulation import resimulate
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
 STRETCH = 1.0
@@ -49,7 +50,7 @@ class Comparison:
     @property
     def noise(self) -> float:
         """Standard deviation of the measured signal's white part, in its unit: what no model can explain."""
-        return noise_scale(self.recording.measured)
+        return noise_of(self.recording.time, self.recording.measured)
 
     @property
     def variance_explained(self) -> float | None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate_many
+from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -34,15 +35,6 @@ def inputs_of(recording: Recording) -> Inputs:
     return Inputs(times, duty, supply, enabled)
 
 
-def noise_scale(measured: Signal) -> float:
-    """Standard deviation of the white part of `measured`, same unit, robust against motion."""
-    differences = np.diff(measured, 2)
-    scale = 1.4826 * float(np.median(np.abs(differences - np.median(differences)))) / math.sqrt(6.0)
-    steps = np.abs(np.diff(measured))
-    steps = steps[steps > 0]
-    return max(scale, float(steps.min()) / math.sqrt(12.0)) if steps.size else scale
-
-
 @dataclass(frozen=True)
 class Start:
     """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit."""
@@ -54,7 +46,7 @@ class Start:
     @staticmethod
     def of(recording: Recording) -> Start:
         """Mean of the samples before the first movement, or a line where the shaft moves at once."""
-        measured, noise = recording.measured, noise_scale(recording.measured)
+        measured, noise = recording.measured, noise_of(recording.time, recording.measured)
         still = np.abs(measured[:LONGEST_START] - np.median(measured[:5])) <= 5.0 * noise + 1e-12
         length = int(np.argmin(still)) if not still.all() else still.size
         if length >= 10:

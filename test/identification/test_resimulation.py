@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.identification.resimulation import Start, inputs_of, noise_scale, resimulate
+from pierburg_ros.identification.resimulation import Start, inputs_of, resimulate
 from pierburg_ros.identification.synthetic import synthetic_recording
 from pierburg_ros.recording import Channel, Recording
 
@@ -23,11 +23,6 @@ def test_channels_on_different_times_are_held_until_their_next_value():
     assert inputs.duty.tolist() == [0.0, 0.0, 0.22, 0.22]
     assert inputs.supply_voltage.tolist() == [12.0, 12.0, 12.0, 13.0]
     assert inputs.enabled.tolist() == [True, True, False, False]
-
-
-def test_noise_of_a_moving_signal_is_that_of_its_sensor():
-    noise = 0.003 * np.random.default_rng(2).standard_normal(2000)
-    assert noise_scale(1.0 + np.sin(3.0 * TIME) + noise) == pytest.approx(0.003, rel=0.1)
 
 
 def test_a_shaft_seen_at_a_stop_starts_exactly_there(nominal):
