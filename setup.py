@@ -50,7 +50,7 @@ setup(
         "numpy",
         "scipy",
         "numba",
-        "mcap",
+        "mcap>=1.6",
         "rosbags",
         "plotly",
         "matplotlib",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -42,6 +43,7 @@ def prove(
     plan = planned(seed, trials, only or [], over_graph)
     if over_graph:
         require_ros()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with Progress(
         TextColumn("{task.description}"),
         BarColumn(),

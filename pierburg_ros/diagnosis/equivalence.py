@@ -6,8 +6,8 @@ import itertools
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.explanation import Explanation, Quantity, Variant, quantities, without
-from pierburg_ros.diagnosis.explore import TIED, Exploration, canonical, repetition
-from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.explore import TIED, Exploration, canonical
+from pierburg_ros.diagnosis.search import Fit, repetition
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from threadpoolctl import threadpool_limits
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
 from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, starts_of
-from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.diagnosis.polish import polished
+from pierburg_ros.diagnosis.search import Fit, Search, repetition
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
@@ -207,7 +208,9 @@ class Exploration:
 
     def _finish(self, look: Fit) -> None:
         self.progress(label(look.explanation))
-        self.add(look.explanation, look.values)
+        fit = self.add(look.explanation, look.values)
+        if ROUGH.intersection(look.explanation.effects):
+            self.fits[look.explanation] = polished(self.search, fit)
 
 
 def _preference(fit: Fit) -> tuple[int, bool, int, float]:
@@ -239,19 +242,3 @@ def label(explanation: Explanation) -> str:
     """For people: what changes."""
     change = (f"change of {explanation.changed}",) if explanation.changed else ()
     return " + ".join((*explanation.drifted, *change, *(v.label for v in explanation.variants))) or "nominal"
-
-
-def repetition(fit: Fit) -> float:
-    """Samples that count as one: 1 + 2 sum of the positive autocorrelation of the residual, at least 1.
-
-    White residuals count in full; a residual with structure left counts by its independent stretches.
-    """
-    residual = fit.solution.residual
-    centred = residual - residual.mean()
-    size = 1 << int(np.ceil(np.log2(2 * centred.size)))
-    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
-    correlation = np.fft.irfft(spectrum, size)[: centred.size // 4]
-    correlation = correlation / max(float(correlation[0]), 1e-30)
-    negative = np.flatnonzero(correlation < 0.02)
-    last = int(negative[0]) if negative.size else correlation.size
-    return float(1.0 + 2.0 * correlation[1:last].sum())

@@ -8,7 +8,7 @@ from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.diagnosis.conclusion import Conclusion, rmse
 from pierburg_ros.diagnosis.equivalence import visibility
 from pierburg_ros.diagnosis.explanation import AFTER, WHEN, Variant
-from pierburg_ros.diagnosis.explore import SIGNIFICANT, Exploration, repetition
+from pierburg_ros.diagnosis.explore import SIGNIFICANT, Exploration
 from pierburg_ros.diagnosis.hypotheses import starts_of
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
@@ -20,7 +20,7 @@ from pierburg_ros.diagnosis.schema import (
     FitQuality,
     NotTestable,
 )
-from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.search import Fit, repetition
 from pierburg_ros.diagnosis.wording import effect_explanation, untestable
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model

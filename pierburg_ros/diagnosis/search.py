@@ -42,6 +42,22 @@ class Fit:
         return float(np.sqrt(self.solution.cost / self.solution.residual.size))
 
 
+def repetition(fit: Fit) -> float:
+    """Samples that count as one: 1 + 2 sum of the positive autocorrelation of the residual, at least 1.
+
+    White residuals count in full; a residual with structure left counts by its independent stretches.
+    """
+    residual = fit.solution.residual
+    centred = residual - residual.mean()
+    size = 1 << int(np.ceil(np.log2(2 * centred.size)))
+    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
+    correlation = np.fft.irfft(spectrum, size)[: centred.size // 4]
+    correlation = correlation / max(float(correlation[0]), 1e-30)
+    negative = np.flatnonzero(correlation < 0.02)
+    last = int(negative[0]) if negative.size else correlation.size
+    return float(1.0 + 2.0 * correlation[1:last].sum())
+
+
 class Search:
     """Fits explanations of one set of recordings by one nominal model."""
 
@@ -60,11 +76,13 @@ class Search:
         start: Start | None = None,
         iterations: int = 25,
         forgiving: bool = False,
+        steps: Signal | None = None,
     ) -> Fit:
         """Best values of an explanation from `start`, dotted values; what it lacks starts nominal.
 
         A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not
-        decide; it ends with the forgiving cost and wants an ordinary fit after it.
+        decide; it ends with the forgiving cost and wants an ordinary fit after it. `steps` are the differences
+        of the Jacobian, shape (free quantities,), in the coordinates of the search.
         """
         coordinates = self.coordinates(explanation)
         begin = coordinates.point({**self.nominal.values, **(start or {})})
@@ -74,7 +92,8 @@ class Search:
             return _forgiven(residual) if forgiving else residual
 
         lower, upper = coordinates.bounds()
-        solution = minimise(cost, begin, lower, upper, coordinates.steps(), iterations)
+        steps = coordinates.steps() if steps is None else steps
+        solution = minimise(cost, begin, lower, upper, steps, iterations)
         values = coordinates.values(solution.point)
         model, switch = self.models(explanation, values)
         return Fit(explanation, {**model.values, **values}, model, switch, solution)

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.diagnosis.explore import repetition
-from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.diagnosis.search import Fit, Search, repetition
 
 HALF_KNOWN = 0.5
 """A value whose 95 % interval reaches further than this share of it to either side is not identifiable."""

@@ -54,7 +54,7 @@ def prove(
     command: Sequence[str] | None = DIAGNOSE,
     report: Report = lambda done, total, last: None,
 ) -> list[dict[str, Any]]:
-    """Conduct the trials that are missing and give the results; after an interrupt, those done by then.
+    """Conduct the trials that are missing and give the results; after SIGINT or SIGTERM, those done by then.
 
     Without a `command` to diagnose, the recordings are only made. Results belong to one version of the
     sources: that at the start.
@@ -76,8 +76,12 @@ def prove(
 
 
 def finish_when_interrupted() -> None:
-    """Leave an interrupt from the keyboard to the main process: a worker ends the trial under way first."""
+    """Leave an interrupt from the keyboard to the main process: a worker ends the trial under way first.
+
+    A worker that is told to terminate gives its trial up, and ends the nodes that it has started.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
 def results(output: Path, plan: Plan, version: str) -> list[dict[str, Any]]:
