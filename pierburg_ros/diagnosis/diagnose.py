@@ -12,9 +12,11 @@ from pierburg_ros.diagnosis import audit, findings
 from pierburg_ros.diagnosis.across import select
 from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Run, evidence_of
+from pierburg_ros.diagnosis.explanation import Explanation
 from pierburg_ros.diagnosis.explore import Exploration, Progress
 from pierburg_ros.diagnosis.locate import locations
 from pierburg_ros.diagnosis.motion import motion_of
+from pierburg_ros.diagnosis.recalibrations import recalibrations
 from pierburg_ros.diagnosis.regimes import regimes
 from pierburg_ros.diagnosis.residual_shape import Shape, fit_shape
 from pierburg_ros.diagnosis.schema import Diagnosis, Location, Regime, ResidualTorque, TorqueOverTime
@@ -70,16 +72,17 @@ def _beyond_the_catalogue(
     Several recordings can vouch for effects that each lower the error on recordings left out; one recording
     cannot. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
     """
-    data = exploration.data
-    base = conclusion.recalibrated
+    data, search = exploration.data, exploration.search
     if len(data.runs) > 1:
-        base = select(exploration, base).fit
-    shape = fit_shape(data, base.model, progress, rivals=[conclusion.nominal.model])
-    confirmed = shape.after < CONFIRMED * shape.before
-    if confirmed and shape.base is conclusion.nominal.model:
-        base = conclusion.nominal
-    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=estimates(exploration.search, base))
-    return reopened, shape if confirmed else None
+        base = select(exploration, conclusion.recalibrated).fit
+        shape = fit_shape(data, [lambda _: base.model], progress)
+    else:
+        explanation = conclusion.recalibrated.explanation
+        shape = fit_shape(data, recalibrations(exploration.nominal, explanation), progress)
+        drifted = Explanation() if shape.base is exploration.nominal else explanation
+        base = search.fit(drifted, shape.base.values, 0)
+    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=estimates(search, base))
+    return reopened, shape if shape.after < CONFIRMED * shape.before else None
 
 
 def _document(

@@ -117,6 +117,16 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
 
 def training_blocks(time: Signal) -> NDArray[np.bool_]:
     """True where a sample trains: blocks of 3 s, every fourth judging; a short recording gets shorter blocks."""
+    return np.asarray(_block(time) % JUDGING != JUDGING - 2)
+
+
+def held_back(data: EvidenceData) -> EvidenceData:
+    """`data` with a third of the training blocks kept from the fit as well, for a choice that is not judged yet."""
+    runs = (replace(run, training=run.training & (_block(run.time) % JUDGING != 0)) for run in data.runs)
+    return replace(data, runs=tuple(runs))
+
+
+def _block(time: Signal) -> NDArray[np.int_]:
+    """Number of the block of each sample."""
     length = min(BLOCK, (time[-1] - time[0]) / (2 * JUDGING))
-    block = np.floor((time - time[0]) / length).astype(int)
-    return np.asarray(block % JUDGING != JUDGING - 2)
+    return np.asarray(np.floor((time - time[0]) / length).astype(int))

@@ -23,12 +23,16 @@ ADEQUATE = 1.03
 """Training error over noise up to which an explanation accounts for all there is."""
 COMPLETE = 1.01
 """Training error over noise at which the search for explanations of one size ends."""
+NEAR = 5.0
+"""Training error over noise up to which the best explanation may only have stopped too early."""
 RIVALS = 3
 """Explanations of one size that are grown while none is adequate, besides every single drift."""
 SIGNIFICANT = 60.0
 """Gain in chi2, in effective samples, that one more quantity must bring; calibrated on recordings with none."""
 GLANCE = 24.0
 """How much of a recording [s] a first look takes in."""
+LATE = 0.5
+"""Excess of squared error in a first look, as a share of the whole, below which the look takes in everything."""
 PROMISING = 15.0
 """Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up."""
 TIED = 12.0
@@ -39,6 +43,8 @@ STARTS_TRIED = 2
 """Starts from which a first look is taken."""
 FINISHED = 4
 """How many of the best first looks are always followed by a whole fit."""
+SHARPENED = 2
+"""How many of the best whole fits with a rough cost are looked over again in each round."""
 TIMED = frozenset({"external_load", "thermal_resistance"})
 """Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
@@ -56,6 +62,7 @@ class Exploration:
         self.nominal = nominal
         self.fits: dict[Explanation, Fit] = {}
         self._grown: set[Explanation] = set()
+        self._sharp: set[Explanation] = set()
         self.progress = progress
 
     def run(self) -> Fit:
@@ -63,11 +70,12 @@ class Exploration:
         with threadpool_limits(1):
             best = self.add(Explanation())
             self.grow(Explanation())
+            self._sharpened(1)
             best = self.preferred()
             while best.explanation.size < LARGEST:
                 for seed in self._promising(best):
                     self.grow(seed)
-                    grown = self.best_of_size(seed.size + 1)
+                    grown = self._sharpened(seed.size + 1)
                     if best.ratio > ADEQUATE and grown is not None and grown.ratio <= COMPLETE:
                         break
                 better = self._pruned()
@@ -132,6 +140,14 @@ class Exploration:
                 return kept
             best = kept
 
+    def _sharpened(self, size: int) -> Fit | None:
+        """The best explanation of `size`, looked over again where it comes near the noise and does not reach it."""
+        best = self.best_of_size(size)
+        if best is None or not best.explanation.variants or not ADEQUATE < best.ratio < NEAR:
+            return best
+        self._sharpen(best)
+        return self.best_of_size(size)
+
     def _promising(self, best: Fit) -> list[Explanation]:
         """Explanations of the size of `best` worth growing: itself, and while nothing is adequate its rivals."""
         size = best.explanation.size
@@ -151,10 +167,13 @@ class Exploration:
         self._grown.add(seed)
         base = self.fits.get(seed) or self.add(seed)
         bases = {search: search.linearised(base) for search in (self.search, self.glance)}
+        quick = self.search if _shows_late(bases[self.glance], bases[self.search]) else self.glance
         tasks = self._tasks(seed, base)
         with ThreadPoolExecutor(2) as pool:
-            looks = list(pool.map(lambda task: self._look(bases, *task), tasks))
-            list(pool.map(self._finish, self._worth_finishing(bases, [look for look in looks if look])))
+            looks = list(pool.map(lambda task: self._look(bases, quick, *task), tasks))
+            finished = list(pool.map(self._finish, self._worth_finishing(bases, [look for look in looks if look])))
+            rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects)]
+            list(pool.map(self._sharpen, sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]))
 
     def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:
         """The explanations to try on top of `seed`, each with what is added."""
@@ -172,17 +191,19 @@ class Exploration:
                 tasks.setdefault(key, growth)
         return list(tasks.items())
 
-    def _look(self, bases: dict[Search, Fit], explanation: Explanation, growth: Growth) -> tuple[Search, Fit] | None:
+    def _look(
+        self, bases: dict[Search, Fit], quick: Search, explanation: Explanation, growth: Growth
+    ) -> tuple[Search, Fit] | None:
         """A brief fit of one grown explanation, from the starts that promise most on top of the base."""
         self.progress(label(explanation))
         if isinstance(growth, str):
             if explanation.changed != growth:
-                return self.glance, self.glance.fit(explanation, bases[self.glance].values, BRIEF)
+                return quick, quick.fit(explanation, bases[quick].values, BRIEF)
             starts = self.search.change_starts(bases[self.search], growth, STARTS_TRIED)
             looks = [self.search.fit(explanation, start, BRIEF) for start in starts]
             return self.search, self.search.dated(min(looks, key=lambda fit: fit.ratio))
         variant, starts = growth
-        search = self.search if variant.effect in TIMED or explanation.changed else self.glance
+        search = self.search if variant.effect in TIMED or explanation.changed else quick
         base = bases[search]
         promised = search.screened(base, variant, starts)[:STARTS_TRIED]
         if base.ratio <= ADEQUATE:
@@ -206,11 +227,21 @@ class Exploration:
             fit for rank, fit in enumerate(fits) if rank < FINISHED or fit.ratio < near or not fit.explanation.variants
         ]
 
-    def _finish(self, look: Fit) -> None:
+    def _finish(self, look: Fit) -> Fit:
         self.progress(label(look.explanation))
-        fit = self.add(look.explanation, look.values)
-        if ROUGH.intersection(look.explanation.effects):
-            self.fits[look.explanation] = polished(self.search, fit)
+        return self.add(look.explanation, look.values)
+
+    def _sharpen(self, fit: Fit) -> None:
+        """Look a fit over again, once."""
+        if fit.explanation not in self._sharp:
+            self._sharp.add(fit.explanation)
+            self.progress(f"{label(fit.explanation)}, once more")
+            self.fits[fit.explanation] = polished(self.search, fit)
+
+
+def _shows_late(glance: Fit, whole: Fit) -> bool:
+    """Whether the first look would miss most of what is left to explain."""
+    return glance.ratio**2 - 1.0 < LATE * (whole.ratio**2 - 1.0)
 
 
 def _preference(fit: Fit) -> tuple[int, bool, int, float]:

@@ -9,30 +9,41 @@ from pierburg_ros.diagnosis.search import Fit, Search, repetition
 
 Signal = NDArray[np.float64]
 
-REACHES = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
+HOPS = (-16.0, 16.0)
+"""Where along the weakest axis further descents start, in standard deviations."""
 FINEST = 1e-3
 """Least difference for a Jacobian, as a share of the usual one."""
-ROUNDS = 6
+ROUNDS = 4
 """How often a better point is descended from."""
 WIDEST = 0.25
 """Share of a parameter's range beyond which nothing is looked for."""
 
 
 def polished(search: Search, fit: Fit) -> Fit:
-    """`fit`, or a better one of the same explanation, descended to from a lower point on one of its cost's axes."""
-    for _ in range(ROUNDS):
-        again = search.fit(fit.explanation, _lower(search, fit), steps=_steps(search, fit))
-        if again.chi2 > fit.chi2 - repetition(fit):
+    """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
+
+    One descent starts at the lowest of many points. Others start far along the weakest axis: the cost's valley
+    bends, so that no point on a straight line shows how low it runs there. The first round may only sharpen the
+    axes, with a Jacobian from finer differences.
+    """
+    for number in range(ROUNDS):
+        axes, steps = _axes(search, fit), _steps(search, fit)
+        starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
+        descents = [search.fit(fit.explanation, start, steps=steps) for start in starts]
+        again = min(descents, key=lambda descent: descent.chi2)
+        gain = fit.chi2 - again.chi2
+        fit = again if gain >= 0.0 else fit
+        if number > 0 and gain < repetition(fit):
             break
-        fit = again
     return fit
 
 
 def _steps(search: Search, fit: Fit) -> Signal:
     """Differences for the Jacobian that are no longer than what the data tell apart."""
     usual = search.coordinates(fit.explanation).steps()
-    told_apart = np.sqrt(_spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-300))
+    told_apart = np.sqrt(_spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
     return np.asarray(np.clip(told_apart, FINEST * usual, usual))
 
 
@@ -41,28 +52,36 @@ def _spread(fit: Fit) -> float:
     return max(1.0, fit.ratio**2) * repetition(fit)
 
 
-def _lower(search: Search, fit: Fit) -> dict[str, float]:
+def _lowest(search: Search, fit: Fit, axes: list[Signal]) -> dict[str, float]:
     """Values at the lowest point on the axes, those of `fit` where none is lower."""
-    coordinates = search.coordinates(fit.explanation)
-    lower, upper = coordinates.bounds()
     best, found = fit.chi2, fit.values
-    for axis in _axes(fit, WIDEST * (upper - lower)):
+    for axis in axes:
         for reach in REACHES:
             for side in (-reach, reach):
-                values = coordinates.values(np.clip(fit.solution.point + side * axis, lower, upper))
+                values = _values(search, fit, side * axis)
                 residual = search.residual(*search.models(fit.explanation, values))
                 if float(residual @ residual) < best:
                     best, found = float(residual @ residual), values
     return found
 
 
-def _axes(fit: Fit, widest: Signal) -> list[Signal]:
-    """The axes of the cost around `fit`, each as long as one standard deviation along it, at most `widest`."""
+def _values(search: Search, fit: Fit, move: Signal) -> dict[str, float]:
+    """Values where `move` leads from `fit`, within bounds."""
+    coordinates = search.coordinates(fit.explanation)
+    return coordinates.values(np.clip(fit.solution.point + move, *coordinates.bounds()))
+
+
+def _axes(search: Search, fit: Fit) -> list[Signal]:
+    """The axes of the cost around `fit`, the weakest first, each as long as one standard deviation along it.
+
+    The longest reach on an axis stays within `WIDEST` of each parameter's range.
+    """
+    lower, upper = search.coordinates(fit.explanation).bounds()
     jacobian = fit.solution.jacobian
     stiffness, directions = np.linalg.eigh(jacobian.T @ jacobian)
-    lengths = np.sqrt(_spread(fit) / np.maximum(stiffness, 1e-12 * max(float(stiffness[-1]), 1e-300)))
+    floor = max(1e-12 * float(stiffness[-1]), 1e-12)
     found = []
-    for length, direction in zip(lengths, directions.T, strict=True):
-        room = float(np.min(widest / np.maximum(np.abs(direction), 1e-12)))
-        found.append(min(length, room / REACHES[-1]) * direction)
+    for stiff, direction in zip(stiffness, directions.T, strict=True):
+        room = float(np.min(WIDEST * (upper - lower) / np.maximum(np.abs(direction), 1e-12)))
+        found.append(min(np.sqrt(_spread(fit) / max(stiff, floor)), room / REACHES[-1]) * direction)
     return found

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, held_back
 from pierburg_ros.diagnosis.least_squares import minimise
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.restarts import restarted
@@ -42,13 +43,17 @@ TIMED = frozenset({"external_load", "thermal_resistance"})
 """Effects that need the whole past, so that a run cannot be simulated in stretches."""
 
 
+Way = Callable[[EvidenceData], Model]
+"""A way to calibrate the model that the shape stands on, to the training samples."""
+
+
 @dataclass(frozen=True)
 class Shape:
     """A model with its residual torque, and what that gains on samples that did not train it.
 
-    `base` is the model without it. `before` and `after` are RMSE over whole runs, on the judging samples, of the
-    best model without a shape and of the shaped one, measured unit. `over_time` holds the middle [s] of each
-    stretch of the first recording and the mean torque [N.m] that the base lacks there, not a number at rest.
+    `base` is the model without it. `before` and `after` are RMSE over whole runs on the judging samples, measured
+    unit, of the base and of the shaped model. `over_time` holds the middle [s] of each stretch of the first
+    recording and the mean torque [N.m] that the base lacks there, not a number at rest.
     """
 
     model: Model
@@ -59,40 +64,43 @@ class Shape:
     over_time: tuple[Signal, Signal]
 
 
-@dataclass(frozen=True)
-class _Fitted:
-    model: Model
-    base: Model
-    error: float
+def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str], None] = lambda _: None) -> Shape:
+    """The residual torque over angle and velocity that makes a simulation fit the training samples.
 
-
-def fit_shape(
-    data: EvidenceData,
-    model: Model,
-    progress: Callable[[str], None] = lambda _: None,
-    rivals: Sequence[Model] = (),
-) -> Shape:
-    """`model` with the residual torque over angle and velocity that makes its simulation fit the training samples.
-
-    Where `rivals` are given, the shape may stand on one of them instead: on the one with which it fits the
-    stretches of the training samples best. Parameters that were fitted to whole runs without the shape may have
-    been bent towards the few standstills that the missing torque has displaced.
+    Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held
+    back from it, with or without a shape: parameters fitted to whole runs without the missing physics may have
+    been bent towards the few standstills that it has displaced.
     """
-    fitted = []
-    with threadpool_limits(1):
-        for number, base in enumerate((model, *rivals), start=1):
-            progress(f"residual torque over angle and velocity, on model {number} of {1 + len(rivals)}")
-            fitted.append(_fitted(data, base))
-    best = min(fitted, key=lambda candidate: candidate.error)
-    grid = best.model.residual_torque or {}
-    over_time = _over_time(data, best.base)
+    with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
+        way = ways[0]
+        if len(ways) > 1:
+            progress("ways to calibrate the model below a residual torque")
+            errors = list(pool.map(lambda way: _left_out(data, way), ways))
+            way = ways[int(np.argmin(errors))]
+        progress("residual torque over angle and velocity")
+        base = way(data)
+        model = _fitted(data, base)
+    grid = model.residual_torque or {}
+    over_time = _over_time(data, base)
     words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
-    before = min(_judged(data, candidate.base) for candidate in fitted)
-    return Shape(best.model, best.base, before, _judged(data, best.model), words, over_time)
+    before, after = (_rms(data.residual(m)[~data.training]) * data.noise for m in (base, model))
+    return Shape(model, base, before, after, words, over_time)
 
 
-def _fitted(data: EvidenceData, base: Model) -> _Fitted:
-    """`base` with its best shape; `error` is the RMSE over the training stretches, in units of the noise.
+def _left_out(data: EvidenceData, way: Way) -> float:
+    """RMSE over stretches of training blocks held back, of the model that `way` calibrates or of its shaped one.
+
+    The better of both. Over whole runs a few standstills at the wrong angle would decide.
+    """
+    inner = held_back(data)
+    stretches = restarted(data, STRETCH)
+    outside = stretches.training & ~restarted(inner, STRETCH).training
+    base = way(inner)
+    return min(_rms(np.nan_to_num(stretches.residual(m)[outside], nan=1e3)) for m in (base, _fitted(inner, base)))
+
+
+def _fitted(data: EvidenceData, base: Model) -> Model:
+    """`base` with its best shape.
 
     Bilinear between about 7 x 6 nodes, damped Gauss-Newton on the signal simulated in stretches of 1 s, each from
     the measured state, so that a slip at the wrong moment is forgotten after a second. Large errors count by their
@@ -119,8 +127,7 @@ def _fitted(data: EvidenceData, base: Model) -> _Fitted:
     size = angle.size * velocity.size
     bound = np.full(size, LARGEST)
     solution = minimise(residual, np.zeros(size), -bound, bound, np.full(size, STEP), ITERATIONS, 3e-3)
-    found = shaped(solution.point)
-    return _Fitted(found, base, _rms(error(found)))
+    return shaped(solution.point)
 
 
 def _rms(values: Signal) -> float:
@@ -164,11 +171,6 @@ def _prior(angles: int, velocities: int) -> Signal:
     rows = np.arange(pairs.shape[0])
     differences[rows, pairs[:, 0]], differences[rows, pairs[:, 1]] = -1.0, 1.0
     return np.concatenate([np.eye(size) / SPREAD, differences / STEEPNESS])
-
-
-def _judged(data: EvidenceData, model: Model) -> float:
-    """RMSE of `model` on the judging samples, measured unit."""
-    return _rms(data.residual(model)[~data.training]) * data.noise
 
 
 def _over_time(data: EvidenceData, model: Model) -> tuple[Signal, Signal]:
