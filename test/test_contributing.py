@@ -25,7 +25,7 @@ from pierburg_ros.plant import Inputs, Model, simulate
 model = Model.nominal(read_actuator("pierburg")).with_values({"coulomb_friction": 0.0})
 if sys.argv[1] != "0":
     model = model.with_values({"air_flow.coefficient": float(sys.argv[1])})
-print(repr(simulate(model, Inputs(np.array([0.0]), np.array([DUTY])), np.arange(4000) / 500.0)[-1]))
+print(repr(simulate(model, Inputs(np.array([0.0]), np.array([DUTY])), np.arange(15000) / 500.0)[-1]))
 """.replace("DUTY", str(DUTY))
 
 

@@ -12,6 +12,7 @@ from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explor
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
 from pierburg_ros.diagnosis.explanation import Explanation
 from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search import Fit
 from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
@@ -42,14 +43,17 @@ def conclude(exploration: Exploration) -> Conclusion:
     exploration.run()
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
-    search = exploration.search
+    tied = alternatives(exploration, chosen)
+    if step := coarse_step(exploration.data):
+        chosen = rounded(chosen, step)
+        exploration.fits[chosen.explanation] = chosen
     return Conclusion(
         verdict_on(chosen),
         chosen,
         exploration.fits[Explanation()],
         recalibrated(exploration),
-        alternatives(exploration, chosen),
-        estimates(search, chosen),
+        tied,
+        estimates(exploration.search, chosen),
     )
 
 

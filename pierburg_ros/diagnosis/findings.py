@@ -39,13 +39,14 @@ def effects(exploration: Exploration, conclusion: Conclusion) -> list[Effect]:
             if name in variant.free or values[name] != 0.0
         }
         ties = ties_of(conclusion, variant)
+        lost = gain(exploration, chosen, variant) if variant.free else None
         found.append(
             Effect(
                 id=variant.effect,
-                confidence=confidence(exploration, chosen, variant),
+                confidence=confidence(exploration, chosen, variant) if variant.free else 1.0,
                 parameters=parameters,
                 indistinguishable_from=ties,
-                explanation=effect_explanation(variant.effect, parameters, ties, gain(exploration, chosen, variant)),
+                explanation=effect_explanation(variant.effect, parameters, ties, lost),
             )
         )
     return found

@@ -58,7 +58,8 @@ STARTS: dict[Variant, list[Start]] = {
 }
 """Starting values by variant; a breakaway torque is what exceeds the sliding friction, phases come in quadrature.
 
-Cogging, tight spots, external loads and quantisation start from what the data show, see `starts_of`."""
+Cogging, tight spots and external loads start from what the data show, see `starts_of`. Steps of the converter are
+not searched for but seen, see `resolution.py`."""
 
 
 TURNS = (0.9, 16.0)
@@ -94,13 +95,4 @@ def starts_of(data: EvidenceData, model: Model) -> dict[Variant, list[Start]]:
         for center in tight_spots(missing, 4)
         for width in (0.06, 0.2)
     ]
-    step = converter_step(run.measured)
-    if step > 2.5 * data.noise:
-        starts[Variant("sensor_quantization", (), (("step", step),))] = [{}]
     return starts
-
-
-def converter_step(measured: Signal) -> float:
-    """Smallest step between measured values, same unit."""
-    values = np.unique(measured)
-    return float(np.min(np.diff(values))) if values.size > 1 else 0.0

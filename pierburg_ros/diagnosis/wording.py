@@ -29,15 +29,18 @@ def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
 
 
 def effect_explanation(
-    effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], gain: float
+    effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], gain: float | None
 ) -> str:
-    """Why the effect is named, with its numbers and what it cannot be told from."""
+    """Why the effect is named, with its numbers and what it cannot be told from; no `gain` where it is seen itself."""
     declared = EFFECT[effect]
     values = ", ".join(quantity(name, estimate) for name, estimate in parameters.items())
-    text = (
-        f"{declared.sentence} It shows in {declared.shows_in}: {values}. Without it the best explanation of the "
-        f"same size leaves {gain:.3g} more in chi-squared, counted in independent samples."
+    reason = (
+        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
+        "independent samples."
+        if gain is not None
+        else "All samples lie on this grid, which is coarse beside the noise."
     )
+    text = f"{declared.sentence} It shows in {declared.shows_in}: {values}. {reason}"
     if ties:
         text += f" These recordings cannot tell it from {_either(ties)}."
     return text
