@@ -45,6 +45,8 @@ FINISHED = 4
 """How many of the best first looks are always followed by a whole fit."""
 SHARPENED = 2
 """How many of the best whole fits with a rough cost are looked over again in each round."""
+COMPARABLE = 1.5
+"""Training error over that of the best explanation of its size up to which a fit is looked over again."""
 TIMED = frozenset({"external_load", "thermal_resistance"})
 """Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
@@ -172,7 +174,9 @@ class Exploration:
         with ThreadPoolExecutor(2) as pool:
             looks = list(pool.map(lambda task: self._look(bases, quick, *task), tasks))
             finished = list(pool.map(self._finish, self._worth_finishing(bases, [look for look in looks if look])))
+            best = self.best_of_size(seed.size + 1)
             rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects)]
+            rough = [fit for fit in rough if best is not None and fit.ratio < COMPARABLE * best.ratio]
             list(pool.map(self._sharpen, sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]))
 
     def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:

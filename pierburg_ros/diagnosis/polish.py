@@ -15,6 +15,8 @@ HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
 FINEST = 1e-3
 """Least difference for a Jacobian, as a share of the usual one."""
+BRIEF = 8
+"""Iterations of a descent."""
 ROUNDS = 4
 """How often a better point is descended from."""
 WIDEST = 0.25
@@ -31,7 +33,7 @@ def polished(search: Search, fit: Fit) -> Fit:
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
-        descents = [search.fit(fit.explanation, start, steps=steps) for start in starts]
+        descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
         gain = fit.chi2 - again.chi2
         fit = again if gain >= 0.0 else fit
