@@ -50,7 +50,12 @@ colcon: $(COLCON)/.installed
 		--install-base build/install --paths . --event-handlers console_direct+
 	PIERBURG_INSTALL_SPACE=$(CURDIR)/build/install $(BIN)/python -m pytest test/nodes/test_install_space.py
 
+# Writes docs/benchmarks.md, in about 25 minutes on an otherwise idle machine.
 benchmarks: $(STAMP)
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,benchmarks]'
+	$(BIN)/python benchmarks/simulator.py
+	$(BIN)/python benchmarks/fuzzy.py
+	$(BIN)/python benchmarks/pacing.py
 	$(BIN)/python benchmarks/graph.py
 
 clean:

@@ -62,7 +62,7 @@ setup(
         "threadpoolctl",
         "zstandard",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "benchmarks": ["mujoco"]},
     entry_points={
         "console_scripts": [
             "pierburg = pierburg_ros.cli.app:main",

@@ -1,12 +1,17 @@
-"""One fuzzy inference, compiled, from Python, and by scikit-fuzzy: `python benchmarks/fuzzy.py`."""
+"""One fuzzy inference, compiled, from Python, and by scikit-fuzzy.
+
+python benchmarks/fuzzy.py writes its section of docs/benchmarks.md; --no-write only prints.
+"""
 
 from __future__ import annotations
 
+import argparse
 import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from machine import machine, write_section
 
 from pierburg_ros.control import Controller, Settings
 from pierburg_ros.control.fuzzy import duty_of
@@ -65,7 +70,10 @@ def per_call(action: Callable[[], object], calls: int) -> float:
 
 
 def main() -> None:
-    """Print a table of microseconds per call."""
+    """Measure microseconds per call and write the section."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--write", action=argparse.BooleanOptionalAction, default=True)
+    options = parser.parse_args()
     settings = Settings()
     record, controller = settings.record(), Controller(settings)
     infer_all(record, INPUTS)
@@ -82,9 +90,12 @@ def main() -> None:
         figures["scikit-fuzzy, same rules"] = per_call(lambda: [infer(*each) for each in INPUTS[:50]], 50)
     except ImportError:
         print("scikit-fuzzy is not installed; its row is left out.")
-    print("| one call | us |\n| --- | ---: |")
-    for name, duration in figures.items():
-        print(f"| {name} | {duration:.3g} |")
+    rows = [f"| {name} | {duration:.3g} |" for name, duration in figures.items()]
+    title, made = f"## Fuzzy inference\n\n{machine()}.\n", "\nMade by `python benchmarks/fuzzy.py`."
+    text = "\n".join([title, "| one call | us |", "|---|---:|", *rows, made])
+    print(text)
+    if options.write:
+        write_section("fuzzy inference", text)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ RESISTANCE, CONSTANT, SUPPLY = 4.139, 37.3 * 0.022, 13.5  # ohm, N.m/A at the sh
 PRELOAD, STIFFNESS, COULOMB, INERTIA = 0.29, 0.1419, 0.2007, 2.4602e-6  # N.m, N.m/rad, N.m, kg.m2
 OPEN = math.pi / 2
 DAMPING = CONSTANT**2 / RESISTANCE  # N.m.s/rad, of the induced voltage
+HARD = 0.9999  # of MuJoCo's constraints; its default, 0.9 to 0.95, lets so light a shaft through friction and stops
 SMOOTHING = 0.01  # rad/s, width of tanh where the friction is smoothed
 
 
@@ -82,13 +83,14 @@ def lsoda_with_events(inputs: Inputs, times: np.ndarray) -> np.ndarray:
 
             for event in (stands, stops):
                 event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
-            inside = times[(times >= now) & (times <= end)]
+            marks = np.append(times[(times >= now) & (times < end)], end)
             solution = solve_ivp(
-                slope, (now, end), (angle, velocity), "LSODA", t_eval=inside, events=[stands, stops],
+                slope, (now, end), (angle, velocity), "LSODA", t_eval=marks, events=[stands, stops],
                 rtol=1e-6, atol=1e-8,
             )  # fmt: skip
-            first = int(np.searchsorted(times, now))
-            angles[first : first + solution.t.size] = solution.y[0]
+            first, reached = int(np.searchsorted(times, now)), min(len(solution.t), marks.size - 1)
+            if reached:
+                angles[first : first + reached] = solution.y[0][:reached]
             if solution.status == 0:
                 angle, velocity, now = float(solution.y[0, -1]), float(solution.y[1, -1]), end
                 continue
@@ -97,6 +99,7 @@ def lsoda_with_events(inputs: Inputs, times: np.ndarray) -> np.ndarray:
             now, angle, velocity = float(solution.t_events[which][0]), float(solution.y_events[which][0][0]), 0.0
             if hit:
                 angle = OPEN if way > 0 else 0.0
+    angles[-1] = angle
     return hall(angles)
 
 
@@ -131,7 +134,8 @@ def mujoco_steps(inputs: Inputs, times: np.ndarray, step: float = 1e-3) -> np.nd
           <option timestep="{step}" integrator="implicitfast" gravity="0 0 0"/>
           <worldbody><body>
             <joint name="shaft" type="hinge" axis="0 0 1" limited="true" range="0 {math.degrees(OPEN)}"
-              armature="{INERTIA}" damping="{DAMPING}" frictionloss="{COULOMB}" stiffness="{STIFFNESS}"/>
+              armature="{INERTIA}" damping="{DAMPING}" frictionloss="{COULOMB}" stiffness="{STIFFNESS}"
+              solimpfriction="{HARD} {HARD} 0.001" solimplimit="{HARD} {HARD} 0.001"/>
             <inertial pos="0 0 0" mass="1e-6" diaginertia="1e-9 1e-9 1e-9"/>
           </body></worldbody>
         </mujoco>""")

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import peers
@@ -57,14 +58,18 @@ START = "import time; begin = time.perf_counter(); {first}; import numpy as np; 
 )
 LIBRARIES = "import numpy, numba, scipy, yaml, pydantic"
 MEMORY = (
-    "import resource, sys; import numpy as np; from simulator import NOMINAL, drive; "
+    "import sys; from simulator import NOMINAL, drive, highest; "
     "from pierburg_ros.plant import simulate, simulate_many; inputs, times = drive(60.0, 500.0); "
-    "simulate(NOMINAL, inputs, times); sets = int(sys.argv[1]); "
-    "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss; "
-    "signals = simulate_many([NOMINAL] * sets, inputs, times); "
-    "after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss; "
-    "print((after - before) / 1024, signals.nbytes / 2**20)"
+    "simulate(NOMINAL, inputs, times); before = highest(); "
+    "signals = simulate_many([NOMINAL] * int(sys.argv[1]), inputs, times); "
+    "print(highest() - before, signals.nbytes / 2**20)"
 )
+
+
+def highest() -> float:
+    """Most memory that this process has held so far [MiB]."""
+    status = Path("/proc/self/status").read_text()
+    return float(next(line.split()[1] for line in status.splitlines() if line.startswith("VmHWM"))) / 1024.0
 
 
 def drive(duration: float, rate: float, seed: int = 1) -> tuple[Inputs, np.ndarray]:

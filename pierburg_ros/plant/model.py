@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,11 @@ class Model:
         return min(declared.minimum, 0.0), declared.maximum
 
     def record(self) -> np.ndarray:
-        """The parameter record that the kernels read, shape (1,)."""
+        """The parameter record that the kernels read, shape (1,); one record for all runs of a model."""
+        return self._packed
+
+    @cached_property
+    def _packed(self) -> np.ndarray:
         a = self.actuator
         values = {**dict.fromkeys(BASE, 0.0), **self.values}
         return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.residual_torque)
