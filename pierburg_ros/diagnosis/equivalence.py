@@ -20,16 +20,17 @@ class Alternative:
 
 def explore_alternatives(exploration: Exploration, best: Fit) -> None:
     """Try what else could stand for each quantity of `best`: any other one, and for an effect any two parameters."""
+    limit = best.chi2 + TIED * repetition(best)
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
         exploration.grow(rest)
         if isinstance(quantity, Variant):
-            start = {name: best.values[name] for name in rest.names}
             free = [name for name in exploration.drifts if name not in rest.drifted and name != rest.changed]
             for pair in itertools.combinations(free, 2):
                 key = canonical(Explanation((*rest.drifted, *pair), rest.variants, rest.changed), exploration.drifts)
-                if key is not None and key not in exploration.fits:
-                    exploration.consider(key, start, best)
+                known = exploration.fits.get(key) if key is not None else None
+                if key is not None and (known is None or known.chi2 > limit):
+                    exploration.consider(key, quantity, best)
 
 
 def alternatives(exploration: Exploration, best: Fit) -> list[Alternative]:

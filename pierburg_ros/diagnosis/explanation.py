@@ -143,7 +143,7 @@ class Coordinates:
         return np.array([low for low, _ in pairs]), np.array([high for _, high in pairs])
 
     def steps(self) -> Signal:
-        """Finite-difference steps: of a drift half a per cent, of an effect a hundredth of its plausible range."""
+        """Finite-difference steps: of a drift 0.05 %, of an effect a thousandth of its plausible range."""
         return np.array([_step(name) for name in self.names])
 
     def _declared(self, name: str) -> tuple[float, float, float, float, float]:
@@ -192,4 +192,4 @@ def _step(name: str) -> float:
         return 0.0005
     if name in RHYTHMS:
         return 0.0002
-    return 0.01 if "." in name else 0.005
+    return 0.001 if "." in name else 0.0005

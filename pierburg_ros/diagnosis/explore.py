@@ -13,6 +13,8 @@ from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities,
 from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, starts_of
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
@@ -47,6 +49,8 @@ SHARPENED = 2
 """How many of the best whole fits with a rough cost are looked over again in each round."""
 COMPARABLE = 1.5
 """Training error over that of the best explanation of its size up to which a fit is looked over again."""
+FADING = (0.75, 0.5, 0.25, 0.0)
+"""Shares of an effect's strength at which what may stand for it is fitted in turn."""
 TIMED = frozenset({"external_load", "thermal_resistance"})
 """Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
@@ -95,12 +99,27 @@ class Exploration:
             self.fits[explanation] = fit
         return self.fits[explanation]
 
-    def consider(self, explanation: Explanation, start: Start, rival: Fit) -> None:
-        """Fit an explanation briefly, and to the end only where it comes near `rival`."""
-        look = self.glance.fit(explanation, start)
-        if look.ratio < 1.3 * rival.ratio:
-            fit = self.add(explanation, look.values)
-            self.add(explanation, fit.values)
+    def consider(self, explanation: Explanation, faded: Variant, rival: Fit) -> None:
+        """Fit an explanation that stands for an effect of `rival` by other means, if it keeps up as the effect fades.
+
+        In one step the others would have to take over all of it at once, and events would jump.
+        """
+        values = rival.values
+        for share in FADING:
+            stage = explanation
+            if share > 0.0:
+                stage = Explanation(
+                    explanation.drifted, (*explanation.variants, _faded(faded, rival, share)), explanation.changed
+                )
+            try:
+                look = self.glance.fit(stage, values, BRIEF)
+            except InputError:
+                continue
+            if look.ratio > 1.3 * rival.ratio:
+                return
+            values = look.values
+        fit = self.add(explanation, values)
+        self.add(explanation, fit.values)
 
     def preferred(self) -> Fit:
         """The smallest explanation that no larger one betters significantly; of equals, the one with least effects."""
@@ -241,6 +260,14 @@ class Exploration:
             self._sharp.add(fit.explanation)
             self.progress(f"{label(fit.explanation)}, once more")
             self.fits[fit.explanation] = polished(self.search, fit)
+
+
+def _faded(variant: Variant, fit: Fit, share: float) -> Variant:
+    """The effect as `fit` has it, fixed at a share of its strength."""
+    declared = EFFECT[variant.effect]
+    values = {name: fit.model.values[f"{variant.effect}.{name}"] for name in declared.names}
+    scaled = {name: value * (share if name in declared.strength else 1.0) for name, value in values.items()}
+    return Variant(variant.effect, (), tuple(scaled.items()))
 
 
 def _shows_late(glance: Fit, whole: Fit) -> bool:
