@@ -13,11 +13,11 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
-FINEST = 1e-3
-"""Least difference for a Jacobian, as a share of the usual one."""
+FINEST, COARSEST = 1e-2, 10.0
+"""Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
 """Iterations of a descent."""
-ROUNDS = 4
+ROUNDS = 6
 """How often a better point is descended from."""
 WIDEST = 0.25
 """Share of a parameter's range beyond which nothing is looked for."""
@@ -27,26 +27,29 @@ def polished(search: Search, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
     One descent starts at the lowest of many points. Others start far along the weakest axis: the cost's valley
-    bends, so that no point on a straight line shows how low it runs there. The first round may only sharpen the
-    axes, with a Jacobian from finer differences.
+    bends, so that no point on a straight line shows how low it runs there. Rounds take fine and coarse differences
+    for the Jacobian in turn; the search ends when neither helps.
     """
+    idle = 0
     for number in range(ROUNDS):
-        axes, steps = _axes(search, fit), _steps(search, fit)
+        axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
-        gain = fit.chi2 - again.chi2
-        fit = again if gain >= 0.0 else fit
-        if number > 0 and gain < repetition(fit):
+        idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
+        fit = again if again.chi2 <= fit.chi2 else fit
+        if idle == 2:
             break
     return fit
 
 
-def _steps(search: Search, fit: Fit) -> Signal:
-    """Differences for the Jacobian that are no longer than what the data tell apart."""
+def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:
+    """Differences for the Jacobian: what the data tell apart, within limits, or the largest."""
     usual = search.coordinates(fit.explanation).steps()
+    if coarse:
+        return COARSEST * usual
     told_apart = np.sqrt(_spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
-    return np.asarray(np.clip(told_apart, FINEST * usual, usual))
+    return np.asarray(np.clip(told_apart, FINEST * usual, COARSEST * usual))
 
 
 def _spread(fit: Fit) -> float:
