@@ -19,15 +19,15 @@ class Alternative:
 
 
 def explore_alternatives(exploration: Exploration, best: Fit) -> None:
-    """Try what else could stand for each quantity of `best`: any other one, and for an effect any two parameters."""
+    """Try what else could stand for each quantity of `best`: any other one, for an effect any one or two parameters."""
     limit = best.chi2 + TIED * repetition(best)
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
         exploration.grow(rest)
         if isinstance(quantity, Variant):
             free = [name for name in exploration.drifts if name not in rest.drifted and name != rest.changed]
-            for pair in itertools.combinations(free, 2):
-                key = canonical(Explanation((*rest.drifted, *pair), rest.variants, rest.changed), exploration.drifts)
+            for others in (*itertools.combinations(free, 1), *itertools.combinations(free, 2)):
+                key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), exploration.drifts)
                 known = exploration.fits.get(key) if key is not None else None
                 if key is not None and (known is None or known.chi2 > limit):
                     exploration.consider(key, quantity, best)

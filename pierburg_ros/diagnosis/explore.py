@@ -102,9 +102,13 @@ class Exploration:
     def consider(self, explanation: Explanation, faded: Variant, rival: Fit) -> None:
         """Fit an explanation that stands for an effect of `rival` by other means, if it keeps up as the effect fades.
 
-        In one step the others would have to take over all of it at once, and events would jump.
+        In one step the others would have to take over all of it at once, and events would jump. A load that pushes all
+        the time is a change of preload, and needs no search.
         """
         values = rival.values
+        if faded.effect == "external_load" and "spring_preload" in explanation.drifted:
+            preload = values["spring_preload"] + values["external_load.torque"]
+            self.add(explanation, {**values, "spring_preload": preload})
         for share in FADING:
             stage = explanation
             if share > 0.0:

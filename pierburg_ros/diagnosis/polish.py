@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.diagnosis.explanation import LOGARITHMIC
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
 
 Signal = NDArray[np.float64]
@@ -13,6 +14,8 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
+LEAPS = (-1.0, -0.5, 0.5, 1.0)
+"""Logarithms of the factors by which the second round moves parameters that are searched by theirs."""
 FINEST, COARSEST = 1e-2, 10.0
 """Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
@@ -34,6 +37,7 @@ def polished(search: Search, fit: Fit) -> Fit:
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
+        starts += [_values(search, fit, leap) for leap in _leaps(fit) if number == 1]
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
@@ -41,6 +45,13 @@ def polished(search: Search, fit: Fit) -> Fit:
         if idle == 2:
             break
     return fit
+
+
+def _leaps(fit: Fit) -> list[Signal]:
+    """Moves of each parameter that is searched by its logarithm, far beyond what the axes call plausible."""
+    names = fit.explanation.names
+    units = [np.eye(len(names))[i] for i, name in enumerate(names) if name in LOGARITHMIC]
+    return [factor * unit for unit in units for factor in LEAPS]
 
 
 def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:

@@ -21,7 +21,7 @@ def test_reaches_the_noise_where_a_descent_stops_early() -> None:
     found = polished(search, stopped)
     assert stopped.ratio > 2.0
     assert found.ratio < 1.03
-    assert found.values["static_friction.breakaway_torque"] == pytest.approx(0.27, rel=0.01)
+    assert found.values["static_friction.breakaway_torque"] == pytest.approx(0.27, rel=0.03)
 
 
 @pytest.mark.parametrize(
