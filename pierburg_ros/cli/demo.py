@@ -58,9 +58,7 @@ def demo(
     console.print(f"Results in {output}: replay.html (the loop), diagnosis/report.html (the concealed effect).")
 
 
-def recorded_run(
-    folder: Path, name: str, physics: Mapping[str, float], simulated_time: bool, console: Console
-) -> Path:
+def recorded_run(folder: Path, name: str, physics: Mapping[str, float], simulated_time: bool, console: Console) -> Path:
     """The recording of a closed loop: plant, controller and recorder as processes, setpoints sent from outside.
 
     `physics` are values of the plant's parameters that differ from the nominal ones. In simulated time plant and

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -41,6 +42,13 @@ TIED = 12.0
 """Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
 BRIEF, FULL = 6, 25
 """Iterations of a first look, and of a whole fit."""
+TASTE = 3
+"""Iterations of a first look after which a hopeless one ends."""
+HOPELESS = 3.0
+"""Error over that of the best explanation of the same size from which a first look is hopeless."""
+REPLACING = 0.5
+"""Share of the error of its base down to which a linear step must promise to come, where another explanation of the
+same size accounts for all."""
 STARTS_TRIED = 2
 """Starts from which a first look is taken."""
 FINISHED = 4
@@ -55,6 +63,40 @@ TIMED = frozenset({"external_load", "thermal_resistance"})
 """Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
 """Explanations of more quantities than this are not tried."""
+
+
+@dataclass(frozen=True)
+class Prospect:
+    """An explanation to look at, by what it is grown: on which samples, from which starts."""
+
+    explanation: Explanation
+    growth: Growth
+    search: Search
+    starts: tuple[Start, ...]
+
+    @property
+    def rough(self) -> bool:
+        """Whether the cost has many local minima."""
+        return not isinstance(self.growth, str) and self.growth[0].effect in ROUGH
+
+    @property
+    def drifts(self) -> bool:
+        """Whether it grows by a drift: cheap to look at, and perhaps what others grow on."""
+        return self.growth in self.explanation.drifted
+
+    @property
+    def changes(self) -> bool:
+        """Whether it grows by a change in the middle of the recording."""
+        return self.growth == self.explanation.changed
+
+
+@dataclass(frozen=True)
+class Look:
+    """A brief fit of a prospect from one of its starts."""
+
+    prospect: Prospect
+    start: Start
+    fit: Fit
 
 
 class Exploration:
@@ -174,7 +216,10 @@ class Exploration:
         return self.best_of_size(size)
 
     def _promising(self, best: Fit) -> list[Explanation]:
-        """Explanations of the size of `best` worth growing: itself, and while nothing is adequate its rivals."""
+        """Explanations of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
+
+        Single drifts come first: an effect beside a drift is more frequent than two effects, and found sooner.
+        """
         size = best.explanation.size
         if best.ratio <= ADEQUATE:
             return [best.explanation]
@@ -183,7 +228,7 @@ class Exploration:
         rivals = [f for f in rivals if f.explanation.changed is None or f.chi2 < 0.5 * min(steady, default=np.inf)]
         rivals.sort(key=lambda fit: fit.chi2)
         alone = [fit.explanation for fit in rivals if not fit.explanation.variants and size == 1]
-        return list(dict.fromkeys([fit.explanation for fit in rivals[:RIVALS]] + alone))
+        return list(dict.fromkeys(alone + [fit.explanation for fit in rivals[:RIVALS]]))
 
     def grow(self, seed: Explanation) -> None:
         """Fit every explanation that has one quantity more than `seed`."""
@@ -193,12 +238,14 @@ class Exploration:
         base = self.fits.get(seed) or self.add(seed)
         bases = {search: search.linearised(base) for search in (self.search, self.glance)}
         quick = self.search if _shows_late(bases[self.glance], bases[self.search]) else self.glance
-        tasks = self._tasks(seed, base)
+        adequate = bases[self.search].ratio <= ADEQUATE
         with ThreadPoolExecutor(2) as pool:
-            looks = list(pool.map(lambda task: self._look(bases, quick, *task), tasks))
-            finished = list(pool.map(self._finish, self._worth_finishing(bases, [look for look in looks if look])))
+            prospects = list(pool.map(lambda task: self._prospect(bases, quick, *task), self._tasks(seed, base)))
+            tastes = [taste for tasted in pool.map(self._taste, prospects) for taste in tasted]
+            looks = list(pool.map(self._look, self._hopeful(tastes, seed.size + 1)))
+            finished = list(pool.map(self._finish, self._worth_finishing(bases, _best_of_each(looks))))
             best = self.best_of_size(seed.size + 1)
-            rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects)]
+            rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects) and not adequate]
             rough = [fit for fit in rough if best is not None and fit.ratio < COMPARABLE * best.ratio]
             list(pool.map(self._sharpen, sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]))
 
@@ -218,37 +265,61 @@ class Exploration:
                 tasks.setdefault(key, growth)
         return list(tasks.items())
 
-    def _look(
-        self, bases: dict[Search, Fit], quick: Search, explanation: Explanation, growth: Growth
-    ) -> tuple[Search, Fit] | None:
-        """A brief fit of one grown explanation, from the starts that promise most on top of the base."""
+    def _prospect(self, bases: dict[Search, Fit], quick: Search, explanation: Explanation, growth: Growth) -> Prospect:
+        """Where to start looking at a grown explanation: what promises most on top of the base, if anything does."""
         self.progress(label(explanation))
         if isinstance(growth, str):
             if explanation.changed != growth:
-                return quick, quick.fit(explanation, bases[quick].values, BRIEF)
+                return Prospect(explanation, growth, quick, (bases[quick].values,))
             starts = self.search.change_starts(bases[self.search], growth, STARTS_TRIED)
-            looks = [self.search.fit(explanation, start, BRIEF) for start in starts]
-            return self.search, self.search.dated(min(looks, key=lambda fit: fit.ratio))
-        variant, starts = growth
+            return Prospect(explanation, growth, self.search, tuple(starts))
+        variant, tried = growth
         search = self.search if variant.effect in TIMED or explanation.changed else quick
         base = bases[search]
-        promised = search.screened(base, variant, starts)[:STARTS_TRIED]
+        promised = search.screened(base, variant, tried)[:STARTS_TRIED]
+        known = self.best_of_size(explanation.size)
         if base.ratio <= ADEQUATE:
             promised = [pair for pair in promised if base.chi2 - pair[0] > PROMISING]
-        looks = []
-        for _, start in promised:
-            start = {**base.values, **start}
-            looks.append(search.fit(explanation, start, BRIEF))
-            if variant.effect in ROUGH and looks[-1].ratio > ADEQUATE:
-                forgiving = search.fit(explanation, start, BRIEF, forgiving=True)
-                looks.append(search.fit(explanation, forgiving.values, BRIEF))
-        return (search, min(looks, key=lambda fit: fit.ratio)) if looks else None
+        elif known is not None and known.ratio <= ADEQUATE:
+            promised = [pair for pair in promised if pair[0] < REPLACING**2 * base.chi2]
+        starts = [{**base.values, **start} for _, start in promised]
+        return Prospect(explanation, growth, search, tuple(starts))
 
-    def _worth_finishing(self, bases: dict[Search, Fit], looks: list[tuple[Search, Fit]]) -> list[Fit]:
+    def _taste(self, prospect: Prospect) -> list[Look]:
+        """A few iterations from each start."""
+        self.progress(label(prospect.explanation))
+        fits = (prospect.search.fit(prospect.explanation, start, TASTE) for start in prospect.starts)
+        return [Look(prospect, start, fit) for start, fit in zip(prospect.starts, fits, strict=True)]
+
+    def _hopeful(self, tastes: list[Look], size: int) -> list[Look]:
+        """Those not far behind the best of their `size`; while nothing accounts for all, a rough cost may mislead."""
+        known = self.best_of_size(size)
+        hopeful = []
+        for taste in tastes:
+            alike = [other.fit.ratio for other in tastes if other.prospect.search is taste.prospect.search]
+            best = min(alike if known is None else [*alike, known.ratio])
+            spared = taste.prospect.drifts or (taste.prospect.rough and best > ADEQUATE)
+            if spared or taste.fit.ratio < HOPELESS * max(best, 1.0):
+                hopeful.append(taste)
+        return hopeful
+
+    def _look(self, taste: Look) -> Look:
+        """A brief fit that goes on from a taste; where the cost is rough, also one that forgives large errors."""
+        prospect = taste.prospect
+        self.progress(label(prospect.explanation))
+        search, explanation = prospect.search, prospect.explanation
+        fits = [search.fit(explanation, taste.fit.values, BRIEF - TASTE)]
+        if prospect.rough and fits[0].ratio > ADEQUATE:
+            forgiving = search.fit(explanation, taste.start, BRIEF, forgiving=True)
+            fits.append(search.fit(explanation, forgiving.values, BRIEF))
+        best = min(fits, key=lambda fit: fit.ratio)
+        return Look(prospect, taste.start, search.dated(best) if prospect.changes else best)
+
+    def _worth_finishing(self, bases: dict[Search, Fit], looks: list[Look]) -> list[Fit]:
         """Looks that deserve a whole fit: the best; on an adequate base only what gains noticeably."""
         if bases[self.search].ratio <= ADEQUATE:
-            return [fit for search, fit in looks if bases[search].chi2 - fit.chi2 > PROMISING]
-        fits = sorted((fit for _, fit in looks), key=lambda fit: fit.ratio)
+            return [look.fit for look in looks if bases[look.prospect.search].chi2 - look.fit.chi2 > PROMISING]
+        fits = sorted((look.fit for look in looks), key=lambda fit: fit.ratio)
         near = 1.3 * fits[0].ratio if fits else 0.0
         return [
             fit for rank, fit in enumerate(fits) if rank < FINISHED or fit.ratio < near or not fit.explanation.variants
@@ -264,6 +335,16 @@ class Exploration:
             self._sharp.add(fit.explanation)
             self.progress(f"{label(fit.explanation)}, once more")
             self.fits[fit.explanation] = polished(self.search, fit)
+
+
+def _best_of_each(looks: list[Look]) -> list[Look]:
+    """The best look at each explanation."""
+    best: dict[Explanation, Look] = {}
+    for look in looks:
+        known = best.get(look.fit.explanation)
+        if known is None or look.fit.ratio < known.fit.ratio:
+            best[look.fit.explanation] = look
+    return list(best.values())
 
 
 def _faded(variant: Variant, fit: Fit, share: float) -> Variant:

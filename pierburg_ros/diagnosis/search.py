@@ -77,12 +77,14 @@ class Search:
         iterations: int = 25,
         forgiving: bool = False,
         steps: Signal | None = None,
+        held: str | None = None,
     ) -> Fit:
         """Best values of an explanation from `start`, dotted values; what it lacks starts nominal.
 
         A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not
         decide; it ends with the forgiving cost and wants an ordinary fit after it. `steps` are the differences
-        of the Jacobian, shape (free quantities,), in the coordinates of the search.
+        of the Jacobian, shape (free quantities,), in the coordinates of the search. The quantity `held` stays at its
+        start.
         """
         coordinates = self.coordinates(explanation)
         begin = coordinates.point({**self.nominal.values, **(start or {})})
@@ -92,6 +94,9 @@ class Search:
             return _forgiven(residual) if forgiving else residual
 
         lower, upper = coordinates.bounds()
+        if held is not None:
+            place = explanation.names.index(held)
+            lower[place] = upper[place] = begin[place]
         steps = coordinates.steps() if steps is None else steps
         solution = minimise(cost, begin, lower, upper, steps, iterations)
         values = coordinates.values(solution.point)

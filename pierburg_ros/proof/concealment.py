@@ -22,8 +22,8 @@ PUBLISHED = {
     "consistent": 40,
     "drift": 50,
     "change": 10,
-    "two": 20,
-    "outside": 24,
+    "two": 12,
+    "outside": 12,
 }
 """Trials of each kind in the published run: 20 a catalogue effect, 100 without any."""
 
