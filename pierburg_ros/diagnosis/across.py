@@ -11,19 +11,24 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from pierburg_ros.diagnosis.conclusion import Support
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
-from pierburg_ros.diagnosis.explanation import Explanation
+from pierburg_ros.diagnosis.explanation import Explanation, Variant, without
 from pierburg_ros.diagnosis.explore import BRIEF, Exploration, canonical, label
 from pierburg_ros.diagnosis.hypotheses import Start, starts_of
 from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.diagnosis.wording import by_recordings_left_out
+
+Signal = NDArray[np.float64]
 
 FOLDS = 4
 """Parts into which the recordings are divided, each left out in turn."""
 LOOKED_AT = 6
 """Candidates of each round that are judged on recordings left out."""
-WORTH = 0.95
+WORTH = 0.85
 """An effect must bring the error on recordings left out below this share of what it was."""
 MOST = 5
 """Most effects chosen."""
@@ -33,10 +38,10 @@ OWN_TIME = frozenset({"external_load"})
 
 @dataclass(frozen=True)
 class Shared:
-    """The chosen fit, and the error on recordings left out before and after each effect, measured unit."""
+    """The chosen fit, and what speaks for each of its effects by id."""
 
     fit: Fit
-    errors: list[tuple[str, float]]
+    supports: dict[str, Support]
 
 
 def select(exploration: Exploration, start: Fit) -> Shared:
@@ -46,20 +51,19 @@ def select(exploration: Exploration, start: Fit) -> Shared:
     folds = _folds(data)
     with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
         chosen = _settled(search, start)
-        error = _left_out(search, folds, chosen)
-        errors = [("recalibrated", error)]
+        error = _rms(_left_out(search, folds, chosen))
         while len(chosen.explanation.variants) < MOST:
             tasks = _tasks(exploration, data, chosen)
             seen = pool.map(_look, itertools.repeat(search), itertools.repeat(chosen), tasks)
             looks = sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:LOOKED_AT]
-            left_out = list(pool.map(_left_out, itertools.repeat(search), itertools.repeat(folds), looks))
-            best, fit = min(zip(left_out, looks, strict=True), key=lambda pair: pair[0])
+            left_out = pool.map(_left_out, itertools.repeat(search), itertools.repeat(folds), looks)
+            best, fit = min(zip(map(_rms, left_out), looks, strict=True), key=lambda pair: pair[0])
             exploration.progress(label(fit.explanation))
             if best > WORTH * error:
                 break
             error, chosen = best, _settled(search, fit)
-            errors.append((fit.explanation.variants[-1].label, error))
-        return Shared(chosen, errors)
+        supported = pool.map(lambda variant: _support(search, folds, chosen, variant), chosen.explanation.variants)
+        return Shared(chosen, dict(zip(chosen.explanation.effects, supported, strict=True)))
 
 
 def _settled(search: Search, fit: Fit) -> Fit:
@@ -100,10 +104,27 @@ def _look(search: Search, chosen: Fit, task: tuple[Explanation, list[Start]]) ->
     return min(fits, key=lambda fit: fit.chi2) if fits else None
 
 
-def _left_out(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], fit: Fit) -> float:
-    """RMSE over all recordings, each simulated by a fit to the others, measured unit."""
-    squares = []
+def _left_out(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], fit: Fit) -> Signal:
+    """RMSE of each part of the recordings, simulated by a fit to the others, measured unit, shape (parts,)."""
+    errors = []
     for fitted, left in folds:
         own = Search(fitted, search.nominal).fit(fit.explanation, fit.values, BRIEF)
-        squares.append(np.mean(left.residual(own.model) ** 2))
-    return float(np.sqrt(np.mean(squares)) * search.data.noise)
+        errors.append(_rms(left.residual(own.model)) * search.data.noise)
+    return np.array(errors)
+
+
+def _support(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], chosen: Fit, variant: Variant) -> Support:
+    """What the recordings left out say of an effect: in how many parts it helps beside the others.
+
+    Few parts leave doubt, so the confidence is that of Laplace's rule of succession.
+    """
+    bare = _settled(search, replace(chosen, explanation=without(chosen.explanation, variant)))
+    lacking, beside = _left_out(search, folds, bare), _left_out(search, folds, chosen)
+    helped, parts = int(np.sum(beside < lacking)), len(folds)
+    unit = search.data.actuator.unit
+    reason = by_recordings_left_out(_rms(lacking), _rms(beside), unit, helped, parts)
+    return Support((helped + 1) / (parts + 2), reason)
+
+
+def _rms(values: Signal) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,13 @@ from scipy.linalg import qr
 
 from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explore_alternatives
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
-from pierburg_ros.diagnosis.explanation import Explanation
+from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
-from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.search import Fit, repetition
 from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
+from pierburg_ros.diagnosis.wording import by_evidence, by_grid
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
@@ -27,8 +29,19 @@ INDEPENDENT = 1e-3
 
 
 @dataclass(frozen=True)
+class Support:
+    """Why an effect is believed, and how far: between 0 and 1."""
+
+    confidence: float
+    reason: str
+
+
+@dataclass(frozen=True)
 class Conclusion:
-    """The chosen fit with its alternatives, and the nominal and recalibrated ones it is held against."""
+    """The chosen fit with its alternatives, and the nominal and recalibrated ones it is held against.
+
+    `supports` goes by the ids of the chosen effects.
+    """
 
     verdict: Verdict
     chosen: Fit
@@ -36,6 +49,7 @@ class Conclusion:
     recalibrated: Fit
     alternatives: list[Alternative]
     estimates: dict[str, Estimate]
+    supports: dict[str, Support]
 
 
 def conclude(exploration: Exploration) -> Conclusion:
@@ -54,7 +68,34 @@ def conclude(exploration: Exploration) -> Conclusion:
         recalibrated(exploration),
         tied,
         estimates(exploration.search, chosen),
+        {variant.effect: _support(exploration, chosen, variant) for variant in chosen.explanation.variants},
     )
+
+
+def _support(exploration: Exploration, chosen: Fit, variant: Variant) -> Support:
+    if not variant.free:
+        return Support(1.0, by_grid())
+    return Support(_confidence(exploration, chosen, variant), by_evidence(_gain(exploration, chosen, variant)))
+
+
+def _gain(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
+    """How many effective chi2 the best explanation without an effect, of the same size or less, lacks."""
+    rivals = [
+        fit
+        for fit in exploration.fits.values()
+        if variant.effect not in fit.explanation.effects and fit.explanation.size <= chosen.explanation.size
+    ]
+    return (min(fit.chi2 for fit in rivals) - chosen.chi2) / repetition(chosen)
+
+
+def _confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
+    """Weight of the explanations with an effect among all of the chosen size, each weighing exp(-chi2 / 2)."""
+    weights = {True: 0.0, False: 0.0}
+    for fit in exploration.fits.values():
+        if fit.explanation.size == chosen.explanation.size:
+            lag = max((fit.chi2 - chosen.chi2) / repetition(chosen), 0.0)
+            weights[variant.effect in fit.explanation.effects] += math.exp(-0.5 * min(lag, 1400.0))
+    return weights[True] / (weights[True] + weights[False])
 
 
 def verdict_on(chosen: Fit) -> Verdict:

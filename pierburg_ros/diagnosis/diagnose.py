@@ -74,14 +74,16 @@ def _beyond_the_catalogue(
     """
     data, search = exploration.data, exploration.search
     if len(data.runs) > 1:
-        base = select(exploration, conclusion.recalibrated).fit
+        shared = select(exploration, conclusion.recalibrated)
+        base, supports = search.linearised(shared.fit), shared.supports
         shape = fit_shape(data, [lambda _: base.model], progress)
     else:
         explanation = conclusion.recalibrated.explanation
         shape = fit_shape(data, recalibrations(exploration.nominal, explanation), progress)
         drifted = Explanation() if shape.base is exploration.nominal else explanation
-        base = search.fit(drifted, shape.base.values, 0)
-    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=estimates(search, base))
+        base, supports = search.fit(drifted, shape.base.values, 0), {}
+    known = estimates(search, base)
+    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=known, supports=supports)
     return reopened, shape if shape.after < CONFIRMED * shape.before else None
 
 
@@ -90,7 +92,7 @@ def _document(
 ) -> Diagnosis:
     data, chosen = exploration.data, conclusion.chosen
     model = shape.model if shape is not None else chosen.model
-    effects = findings.effects(exploration, conclusion)
+    effects = findings.effects(conclusion)
     parameters = findings.parameters(exploration, conclusion)
     quality = audit.data_quality(data.runs, data.actuator, data.noise)
     fit = findings.fit_quality(exploration, conclusion, model)

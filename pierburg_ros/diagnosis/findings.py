@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.diagnosis.conclusion import Conclusion, rmse
 from pierburg_ros.diagnosis.equivalence import visibility
@@ -20,13 +18,13 @@ from pierburg_ros.diagnosis.schema import (
     FitQuality,
     NotTestable,
 )
-from pierburg_ros.diagnosis.search import Fit, repetition
+from pierburg_ros.diagnosis.search import Fit
 from pierburg_ros.diagnosis.wording import effect_explanation, untestable
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
 
 
-def effects(exploration: Exploration, conclusion: Conclusion) -> list[Effect]:
+def effects(conclusion: Conclusion) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
     chosen = conclusion.chosen
     found = []
@@ -39,14 +37,14 @@ def effects(exploration: Exploration, conclusion: Conclusion) -> list[Effect]:
             if name in variant.free or values[name] != 0.0
         }
         ties = ties_of(conclusion, variant)
-        lost = gain(exploration, chosen, variant) if variant.free else None
+        support = conclusion.supports[variant.effect]
         found.append(
             Effect(
                 id=variant.effect,
-                confidence=confidence(exploration, chosen, variant) if variant.free else 1.0,
+                confidence=support.confidence,
                 parameters=parameters,
                 indistinguishable_from=ties,
-                explanation=effect_explanation(variant.effect, parameters, ties, lost),
+                explanation=effect_explanation(variant.effect, parameters, ties, support.reason),
             )
         )
     return found
@@ -62,26 +60,6 @@ def _estimate(conclusion: Conclusion, name: str, value: float, unit: str) -> Est
 def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
     """What may stand for a quantity of the chosen explanation."""
     return [list(tie.instead) for tie in conclusion.alternatives if tie.quantity == quantity]
-
-
-def gain(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
-    """How many effective chi2 the best explanation without an effect, of the same size or less, lacks."""
-    rivals = [
-        fit
-        for fit in exploration.fits.values()
-        if variant.effect not in fit.explanation.effects and fit.explanation.size <= chosen.explanation.size
-    ]
-    return (min(fit.chi2 for fit in rivals) - chosen.chi2) / repetition(chosen)
-
-
-def confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
-    """Weight of the explanations with an effect among all of the chosen size, each weighing exp(-chi2 / 2)."""
-    weights = {True: 0.0, False: 0.0}
-    for fit in exploration.fits.values():
-        if fit.explanation.size == chosen.explanation.size:
-            lag = max((fit.chi2 - chosen.chi2) / repetition(chosen), 0.0)
-            weights[variant.effect in fit.explanation.effects] += math.exp(-0.5 * min(lag, 1400.0))
-    return weights[True] / (weights[True] + weights[False])
 
 
 def parameters(exploration: Exploration, conclusion: Conclusion) -> dict[str, BaseParameter]:

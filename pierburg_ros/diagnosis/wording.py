@@ -29,21 +29,36 @@ def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
 
 
 def effect_explanation(
-    effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], gain: float | None
+    effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], reason: str
 ) -> str:
-    """Why the effect is named, with its numbers and what it cannot be told from; no `gain` where it is seen itself."""
+    """Why the effect is named, with its numbers and what it cannot be told from."""
     declared = EFFECT[effect]
     values = ", ".join(quantity(name, estimate) for name, estimate in parameters.items())
-    reason = (
-        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
-        "independent samples."
-        if gain is not None
-        else "All samples lie on this grid, which is coarse beside the noise."
-    )
     text = f"{declared.sentence} It shows in {declared.shows_in}: {values}. {reason}"
     if ties:
         text += f" These recordings cannot tell it from {_either(ties)}."
     return text
+
+
+def by_evidence(gain: float) -> str:
+    """Why an effect is named that the best explanation needs."""
+    return (
+        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
+        "independent samples."
+    )
+
+
+def by_grid() -> str:
+    """Why steps of the converter are named."""
+    return "All samples lie on this grid, which is coarse beside the noise."
+
+
+def by_recordings_left_out(without: float, beside: float, unit: str, helped: int, parts: int) -> str:
+    """Why an effect is named where no explanation accounts for all."""
+    return (
+        f"On recordings left out of the fit the error is {without:.3g} {unit} without it and {beside:.3g} {unit} "
+        f"with it; it helps in {helped} of {parts} parts. Other physics may stand behind it."
+    )
 
 
 def untestable(mark: float) -> str:
