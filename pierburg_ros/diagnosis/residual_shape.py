@@ -88,15 +88,21 @@ def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str],
 
 
 def _left_out(data: EvidenceData, way: Way) -> float:
-    """RMSE over stretches of training blocks held back, of the model that `way` calibrates or of its shaped one.
+    """Error on training blocks held back, of the model that `way` calibrates or of its shaped one, the lower.
 
-    The better of both. Over whole runs a few standstills at the wrong angle would decide.
+    The product of the RMSE over whole runs, where a few standstills at the wrong angle can decide, and over
+    stretches, which do not see what a model forgets slowly.
     """
     inner = held_back(data)
-    stretches = restarted(data, STRETCH)
-    outside = stretches.training & ~restarted(inner, STRETCH).training
+    stretches, trained = restarted(data, STRETCH), restarted(inner, STRETCH).training
     base = way(inner)
-    return min(_rms(np.nan_to_num(stretches.residual(m)[outside], nan=1e3)) for m in (base, _fitted(inner, base)))
+
+    def error(model: Model) -> float:
+        whole = data.residual(model)[data.training & ~inner.training]
+        short = stretches.residual(model)[stretches.training & ~trained]
+        return math.prod(_rms(np.nan_to_num(residual, nan=1e3)) for residual in (whole, short))
+
+    return min(error(base), error(_fitted(inner, base)))
 
 
 def _fitted(data: EvidenceData, base: Model) -> Model:
