@@ -67,7 +67,8 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
 def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float) -> list[Signal]:
     """Points that an interval must hold: `reach` away along one of the search's coordinates, then in the valley.
 
-    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`.
+    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`: from where the valley
+    leads, from where it was last, and from where they are at the best.
     """
     coordinates = search.coordinates(fit.explanation)
     lower, upper = coordinates.bounds()
@@ -80,11 +81,12 @@ def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float) -> l
         return np.asarray(point)
 
     nowhere = np.zeros(best.size)
-    points = [moved(reach, nowhere)]
-    valley = nowhere
+    points, valley = [moved(reach, nowhere)], nowhere
     for _ in range(DOUBLINGS if np.isfinite(reach) else 0):
-        start = coordinates.values(moved(reach, 2.0 * valley))
-        there = search.fit(fit.explanation, start, BRIEF, held=name).solution
+        starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
+        tried = {tuple(start): start for start in starts}.values()
+        fits = [search.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried]
+        there = min(fits, key=lambda solution: solution.cost)
         if there.cost > limit:
             break
         points.append(there.point)
