@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.diagnosis.hypotheses import ROUGH
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
 
 Signal = NDArray[np.float64]
@@ -17,6 +18,8 @@ SURE = 1.96
 """Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""
 DOUBLINGS = 7
 """How often the reach of an interval is doubled at most."""
+PATIENCE = 3
+"""How many reaches without success end the search where the cost is rough: a fit may have ended in a dent."""
 BRIEF = 4
 """Iterations in which the other quantities are fitted again."""
 HALF_KNOWN = 0.5
@@ -82,16 +85,18 @@ def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float) -> l
 
     nowhere = np.zeros(best.size)
     points, valley = [moved(reach, nowhere)], nowhere
+    patience = PATIENCE if ROUGH.intersection(fit.explanation.effects) else 1
     for _ in range(DOUBLINGS if np.isfinite(reach) else 0):
         starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
         tried = {tuple(start): start for start in starts}.values()
         fits = [search.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried]
         there = min(fits, key=lambda solution: solution.cost)
-        if there.cost > limit:
+        if there.cost <= limit:
+            points.append(there.point)
+            valley = there.point - best
+        else:
+            patience -= 1
+        if patience == 0 or not lower[place] < there.point[place] < upper[place]:
             break
-        points.append(there.point)
-        if not lower[place] < there.point[place] < upper[place]:
-            break
-        valley = there.point - best
         reach *= 2.0
     return points
