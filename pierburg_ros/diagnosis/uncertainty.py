@@ -18,6 +18,8 @@ SURE = 1.96
 """Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""
 DOUBLINGS = 7
 """How often the reach of an interval is doubled at most."""
+DENTED = 12.0
+"""Rise of chi2 allowed where the cost is rough: the best of many dents is lower than the true one by luck."""
 PATIENCE = 3
 """How many reaches without success end the search where the cost is rough: a fit may have ended in a dent."""
 BRIEF = 4
@@ -51,12 +53,13 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * spread
     weak = np.diag(normal) <= 1e-12 * max(float(np.max(np.diag(normal), initial=0.0)), 1e-300)
     reach = np.where(weak, np.inf, SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0)))
-    limit = fit.chi2 + SURE**2 * spread
+    rough = bool(ROUGH.intersection(fit.explanation.effects))
+    limit = fit.chi2 + (DENTED if rough else SURE**2) * spread
     places = range(len(fit.explanation.names))
     coordinates = search.coordinates(fit.explanation)
     sides = [(place, side * float(reach[place])) for place in places for side in (-1.0, 1.0)]
     with ThreadPoolExecutor(2) as pool:
-        ends = list(pool.map(lambda side: _ends(search, fit, side[0], side[1], limit), sides))
+        ends = list(pool.map(lambda side: _ends(search, fit, side[0], side[1], limit, PATIENCE if rough else 1), sides))
     allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
     result = {}
     for place, name in enumerate(fit.explanation.names):
@@ -67,11 +70,11 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     return result
 
 
-def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float) -> list[Signal]:
+def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:
     """Points that an interval must hold: `reach` away along one of the search's coordinates, then in the valley.
 
     Further out the other quantities are fitted again, as long as chi2 keeps the `limit`: from where the valley
-    leads, from where it was last, and from where they are at the best.
+    leads, from where it was last, and from where they are at the best. `patience`: reaches without success that end it.
     """
     coordinates = search.coordinates(fit.explanation)
     lower, upper = coordinates.bounds()
@@ -85,7 +88,6 @@ def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float) -> l
 
     nowhere = np.zeros(best.size)
     points, valley = [moved(reach, nowhere)], nowhere
-    patience = PATIENCE if ROUGH.intersection(fit.explanation.effects) else 1
     for _ in range(DOUBLINGS if np.isfinite(reach) else 0):
         starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
         tried = {tuple(start): start for start in starts}.values()
