@@ -37,6 +37,16 @@ def test_setpoints_are_written_where_they_change(tmp_path):
     assert len(values) > 1 and np.all(np.diff(values) != 0.0)
 
 
+@pytest.mark.parametrize(("kind", "number"), planned(1, over_graph=True).names)
+def test_the_controller_takes_the_setpoints_of_every_planned_trial(kind, number, tmp_path):
+    trial = draw_over_graph(kind, number, 1)
+    for holdout in (False, True):
+        graph.write_setpoints(tmp_path / "setpoints.csv", trial, 20.0, holdout)
+        values = [float(row["setpoint"]) for row in csv.DictReader((tmp_path / "setpoints.csv").open())]
+        assert min(values) >= 0.0
+        assert max(values) <= np.pi / 2
+
+
 def test_a_node_that_ends_early_is_reported(tmp_path):
     with (
         pytest.raises(InputError, match="a node ended while"),
