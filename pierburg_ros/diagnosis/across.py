@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.conclusion import Support
-from pierburg_ros.diagnosis.evidence_data import EvidenceData
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, rms
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, without
 from pierburg_ros.diagnosis.explore import BRIEF, Exploration, canonical, label
 from pierburg_ros.diagnosis.hypotheses import Start, starts_of
@@ -51,18 +51,19 @@ def select(exploration: Exploration, start: Fit) -> Shared:
     folds = _folds(data)
     with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
         chosen = _settled(search, start)
-        error = _rms(_left_out(search, folds, chosen))
+        error = rms(_left_out(search, folds, chosen))
         while len(chosen.explanation.variants) < MOST:
             tasks = _tasks(exploration, data, chosen)
             seen = pool.map(_look, itertools.repeat(search), itertools.repeat(chosen), tasks)
             looks = sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:LOOKED_AT]
             left_out = pool.map(_left_out, itertools.repeat(search), itertools.repeat(folds), looks)
-            best, fit = min(zip(map(_rms, left_out), looks, strict=True), key=lambda pair: pair[0])
+            best, fit = min(zip(map(rms, left_out), looks, strict=True), key=lambda pair: pair[0])
             exploration.progress(label(fit.explanation))
             if best > WORTH * error:
                 break
             error, chosen = best, _settled(search, fit)
-        supported = pool.map(lambda variant: _support(search, folds, chosen, variant), chosen.explanation.variants)
+        beside = _left_out(search, folds, chosen)
+        supported = pool.map(lambda lost: _support(search, folds, chosen, lost, beside), chosen.explanation.variants)
         return Shared(chosen, dict(zip(chosen.explanation.effects, supported, strict=True)))
 
 
@@ -109,22 +110,21 @@ def _left_out(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], fi
     errors = []
     for fitted, left in folds:
         own = Search(fitted, search.nominal).fit(fit.explanation, fit.values, BRIEF)
-        errors.append(_rms(left.residual(own.model)) * search.data.noise)
+        errors.append(rms(left.residual(own.model)) * search.data.noise)
     return np.array(errors)
 
 
-def _support(search: Search, folds: list[tuple[EvidenceData, EvidenceData]], chosen: Fit, variant: Variant) -> Support:
+def _support(
+    search: Search, folds: list[tuple[EvidenceData, EvidenceData]], chosen: Fit, variant: Variant, beside: Signal
+) -> Support:
     """What the recordings left out say of an effect: in how many parts it helps beside the others.
 
-    Few parts leave doubt, so the confidence is that of Laplace's rule of succession.
+    `beside` are the errors of the parts with all effects. Few parts leave doubt, so the confidence is that of
+    Laplace's rule of succession.
     """
     bare = _settled(search, replace(chosen, explanation=without(chosen.explanation, variant)))
-    lacking, beside = _left_out(search, folds, bare), _left_out(search, folds, chosen)
+    lacking = _left_out(search, folds, bare)
     helped, parts = int(np.sum(beside < lacking)), len(folds)
     unit = search.data.actuator.unit
-    reason = by_recordings_left_out(_rms(lacking), _rms(beside), unit, helped, parts)
+    reason = by_recordings_left_out(rms(lacking), rms(beside), unit, helped, parts)
     return Support((helped + 1) / (parts + 2), reason)
-
-
-def _rms(values: Signal) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))

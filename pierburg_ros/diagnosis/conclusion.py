@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explore_alternatives
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, rms
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
@@ -126,4 +126,4 @@ def recalibrated(exploration: Exploration) -> Fit:
 def rmse(data: EvidenceData, model: Model, switch: Switch | None, training: bool) -> float | None:
     """Root mean squared error on training or on judging samples, measured unit; None where there are none."""
     residual = data.residual(model, switch)[data.training if training else ~data.training]
-    return float(np.sqrt(np.mean(residual**2)) * data.noise) if residual.size else None
+    return rms(residual) * data.noise if residual.size else None

@@ -115,6 +115,11 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
     return EvidenceData(actuator, tuple(runs), noise)
 
 
+def rms(values: Signal) -> float:
+    """Root mean square, in the unit of `values`."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
 def training_blocks(time: Signal) -> NDArray[np.bool_]:
     """True where a sample trains: blocks of 3 s, every fourth judging; a short recording gets shorter blocks."""
     return np.asarray(_block(time) % JUDGING != JUDGING - 2)

@@ -238,16 +238,13 @@ class Exploration:
         base = self.fits.get(seed) or self.add(seed)
         bases = {search: search.linearised(base) for search in (self.search, self.glance)}
         quick = self.search if _shows_late(bases[self.glance], bases[self.search]) else self.glance
-        adequate = bases[self.search].ratio <= ADEQUATE
         with ThreadPoolExecutor(2) as pool:
             prospects = list(pool.map(lambda task: self._prospect(bases, quick, *task), self._tasks(seed, base)))
             tastes = [taste for tasted in pool.map(self._taste, prospects) for taste in tasted]
             looks = list(pool.map(self._look, self._hopeful(tastes, seed.size + 1)))
             finished = list(pool.map(self._finish, self._worth_finishing(bases, _best_of_each(looks))))
-            best = self.best_of_size(seed.size + 1)
-            rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects) and not adequate]
-            rough = [fit for fit in rough if best is not None and fit.ratio < COMPARABLE * best.ratio]
-            list(pool.map(self._sharpen, sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]))
+            if bases[self.search].ratio > ADEQUATE:
+                list(pool.map(self._sharpen, self._worth_sharpening(finished, seed.size + 1)))
 
     def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:
         """The explanations to try on top of `seed`, each with what is added."""
@@ -294,14 +291,16 @@ class Exploration:
     def _hopeful(self, tastes: list[Look], size: int) -> list[Look]:
         """Those not far behind the best of their `size`; while nothing accounts for all, a rough cost may mislead."""
         known = self.best_of_size(size)
-        hopeful = []
+        best = dict.fromkeys((self.search, self.glance), known.ratio if known else np.inf)
         for taste in tastes:
-            alike = [other.fit.ratio for other in tastes if other.prospect.search is taste.prospect.search]
-            best = min(alike if known is None else [*alike, known.ratio])
-            spared = taste.prospect.drifts or (taste.prospect.rough and best > ADEQUATE)
-            if spared or taste.fit.ratio < HOPELESS * max(best, 1.0):
-                hopeful.append(taste)
-        return hopeful
+            best[taste.prospect.search] = min(best[taste.prospect.search], taste.fit.ratio)
+
+        def hopeful(taste: Look) -> bool:
+            leading = best[taste.prospect.search]
+            spared = taste.prospect.drifts or (taste.prospect.rough and leading > ADEQUATE)
+            return spared or taste.fit.ratio < HOPELESS * max(leading, 1.0)
+
+        return [taste for taste in tastes if hopeful(taste)]
 
     def _look(self, taste: Look) -> Look:
         """A brief fit that goes on from a taste; where the cost is rough, also one that forgives large errors."""
@@ -324,6 +323,13 @@ class Exploration:
         return [
             fit for rank, fit in enumerate(fits) if rank < FINISHED or fit.ratio < near or not fit.explanation.variants
         ]
+
+    def _worth_sharpening(self, finished: list[Fit], size: int) -> list[Fit]:
+        """Whole fits with a rough cost that come near the best of their `size`."""
+        best = self.best_of_size(size)
+        rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects)]
+        rough = [fit for fit in rough if best is not None and fit.ratio < COMPARABLE * best.ratio]
+        return sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]
 
     def _finish(self, look: Fit) -> Fit:
         self.progress(label(look.explanation))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.explanation import LOGARITHMIC
-from pierburg_ros.diagnosis.search import Fit, Search, repetition
+from pierburg_ros.diagnosis.search import Fit, Search, repetition, spread
 
 Signal = NDArray[np.float64]
 
@@ -59,13 +59,8 @@ def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:
     usual = search.coordinates(fit.explanation).steps()
     if coarse:
         return COARSEST * usual
-    told_apart = np.sqrt(_spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
+    told_apart = np.sqrt(spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
     return np.asarray(np.clip(told_apart, FINEST * usual, COARSEST * usual))
-
-
-def _spread(fit: Fit) -> float:
-    """Rise of chi2 that stands for one standard deviation, squared."""
-    return max(1.0, fit.ratio**2) * repetition(fit)
 
 
 def _lowest(search: Search, fit: Fit, axes: list[Signal]) -> dict[str, float]:
@@ -99,5 +94,5 @@ def _axes(search: Search, fit: Fit) -> list[Signal]:
     found = []
     for stiff, direction in zip(stiffness, directions.T, strict=True):
         room = float(np.min(WIDEST * (upper - lower) / np.maximum(np.abs(direction), 1e-12)))
-        found.append(min(np.sqrt(_spread(fit) / max(stiff, floor)), room / REACHES[-1]) * direction)
+        found.append(min(np.sqrt(spread(fit) / max(stiff, floor)), room / REACHES[-1]) * direction)
     return found

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, held_back
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, held_back, rms
 from pierburg_ros.diagnosis.least_squares import minimise
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.restarts import restarted
@@ -83,7 +83,7 @@ def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str],
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
     words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
-    before, after = (_rms(data.residual(m)[~data.training]) * data.noise for m in (base, model))
+    before, after = (rms(data.residual(m)[~data.training]) * data.noise for m in (base, model))
     return Shape(model, base, before, after, words, over_time)
 
 
@@ -100,7 +100,7 @@ def _left_out(data: EvidenceData, way: Way) -> float:
     def error(model: Model) -> float:
         whole = data.residual(model)[data.training & ~inner.training]
         short = stretches.residual(model)[stretches.training & ~trained]
-        return math.prod(_rms(np.nan_to_num(residual, nan=1e3)) for residual in (whole, short))
+        return math.prod(rms(np.nan_to_num(residual, nan=1e3)) for residual in (whole, short))
 
     return min(error(base), error(_fitted(inner, base)))
 
@@ -124,7 +124,7 @@ def _fitted(data: EvidenceData, base: Model) -> Model:
     def error(candidate: Model) -> Signal:
         return np.nan_to_num(stretches.residual(candidate)[training], nan=1e3, posinf=1e3, neginf=-1e3)
 
-    scale = _rms(error(base))
+    scale = rms(error(base))
 
     def residual(point: Signal) -> Signal:
         misfit = error(shaped(point)) / scale
@@ -134,10 +134,6 @@ def _fitted(data: EvidenceData, base: Model) -> Model:
     bound = np.full(size, LARGEST)
     solution = minimise(residual, np.zeros(size), -bound, bound, np.full(size, STEP), ITERATIONS, 3e-3)
     return shaped(solution.point)
-
-
-def _rms(values: Signal) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def nodes(data: EvidenceData) -> tuple[Signal, Signal]:

@@ -58,6 +58,11 @@ def repetition(fit: Fit) -> float:
     return float(1.0 + 2.0 * correlation[1:last].sum())
 
 
+def spread(fit: Fit) -> float:
+    """Rise of chi2 that stands for one standard deviation: 1 where the residual is white noise."""
+    return max(1.0, fit.ratio**2) * repetition(fit)
+
+
 class Search:
     """Fits explanations of one set of recordings by one nominal model."""
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.hypotheses import ROUGH
-from pierburg_ros.diagnosis.search import Fit, Search, repetition
+from pierburg_ros.diagnosis.search import Fit, Search, spread
 
 Signal = NDArray[np.float64]
 
@@ -49,12 +49,12 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     """
     jacobian = fit.solution.jacobian
     normal = jacobian.T @ jacobian
-    spread = max(1.0, fit.ratio**2) * repetition(fit)
-    covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * spread
+    rise = spread(fit)
+    covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * rise
     weak = np.diag(normal) <= 1e-12 * max(float(np.max(np.diag(normal), initial=0.0)), 1e-300)
     reach = np.where(weak, np.inf, SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0)))
     rough = bool(ROUGH.intersection(fit.explanation.effects))
-    limit = fit.chi2 + (DENTED if rough else SURE**2) * spread
+    limit = fit.chi2 + (DENTED if rough else SURE**2) * rise
     places = range(len(fit.explanation.names))
     coordinates = search.coordinates(fit.explanation)
     sides = [(place, side * float(reach[place])) for place in places for side in (-1.0, 1.0)]

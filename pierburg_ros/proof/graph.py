@@ -27,7 +27,6 @@ from pierburg_ros.recording import read_recording
 PATIENCE = 600.0  # s of wall time, after which a recording over the graph is given up
 POLL = 1.0  # s
 ATTEMPTS = 3
-STOPS = (0.0, np.pi / 2)  # rad
 
 
 def record_over_graph(trial: Trial, path: Path, holdout: bool = False) -> Recorded:
@@ -84,7 +83,8 @@ def write_setpoints(path: Path, trial: Trial, duration: float, holdout: bool) ->
     """Write the setpoints [rad] where they change, as the controller's file: within the stops, else it refuses them."""
     time_points = sampled(duration, trial.rate)
     random = np.random.default_rng([trial.seed, int(holdout)])
-    values = np.clip(setpoint_sequence(time_points, random, holdout), *STOPS)
+    actuator = read_actuator("pierburg")
+    values = np.clip(setpoint_sequence(time_points, random, holdout), actuator.lower_stop, actuator.upper_stop)
     changes = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
     with path.open("w", newline="") as stream:
         writer = csv.writer(stream)

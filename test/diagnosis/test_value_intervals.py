@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from recordings import NOMINAL
 
 from pierburg_ros.diagnosis.explanation import Explanation
-from pierburg_ros.diagnosis.least_squares import minimise
-from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.search import Search
 from pierburg_ros.diagnosis.uncertainty import SURE, estimates
 
 Signal = NDArray[np.float64]
@@ -23,41 +22,48 @@ NOISE = np.random.default_rng(2).standard_normal(400)
 
 
 @dataclass(frozen=True)
+class Values:
+    """In place of a model: its values alone."""
+
+    values: dict[str, float]
+
+
 class Plane:
     """Coordinates that are the values themselves."""
 
     def bounds(self) -> tuple[Signal, Signal]:
         return np.full(2, -WIDE), np.full(2, WIDE)
 
+    def steps(self) -> Signal:
+        return np.full(2, 1e-5)
+
+    def point(self, values: Mapping[str, float]) -> Signal:
+        return np.array([values[X], values[Y]])
+
     def values(self, point: Signal) -> dict[str, float]:
         return {X: float(point[0]), Y: float(point[1])}
 
 
-@dataclass(frozen=True)
-class Known:
+class Known(Search):
     """A search over two numbers whose residual is given, beside white noise that they do not touch."""
 
-    residual: Callable[[float, float], list[float]]
+    def __init__(self, given: Callable[[float, float], list[float]]) -> None:
+        self.nominal = NOMINAL
+        self.given = given
 
-    def coordinates(self, explanation: Explanation) -> Plane:
+    def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()
 
-    def fit(
-        self, explanation: Explanation, start: Mapping[str, float], iterations: int = 60, held: str | None = None
-    ) -> Fit:
-        begin = np.array([start[X], start[Y]])
-        lower, upper = Plane().bounds()
-        if held is not None:
-            lower[(X, Y).index(held)] = upper[(X, Y).index(held)] = start[held]
-        solution = minimise(
-            lambda p: np.concatenate([NOISE, self.residual(*p)]), begin, lower, upper, np.full(2, 1e-5), iterations
-        )
-        return Fit(explanation, Plane().values(solution.point), NOMINAL, None, solution)
+    def models(self, explanation: Explanation, values: Mapping[str, float]) -> tuple[Values, None]:  # type: ignore[override]
+        return Values(dict(values)), None
+
+    def residual(self, model: Values, switch: None = None) -> Signal:  # type: ignore[override]
+        return np.concatenate([NOISE, self.given(model.values[X], model.values[Y])])
 
 
 def interval(residual: Callable[[float, float], list[float]], name: str) -> tuple[float, float]:
     search = Known(residual)
-    found = estimates(search, search.fit(Explanation((X, Y)), {X: 1.0, Y: 1.0}))[name]  # type: ignore[arg-type]
+    found = estimates(search, search.fit(Explanation((X, Y)), {X: 1.0, Y: 1.0}))[name]
     return found.low, found.high
 
 
