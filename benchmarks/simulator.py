@@ -134,9 +134,7 @@ def many_sets() -> list[str]:
     inputs, times = drive(60.0, 500.0)
     random = np.random.default_rng(2)
     lag = list(CASES.values())[1]
-    sets = [
-        NOMINAL.with_values({**lag, "armature_resistance": float(random.uniform(3.5, 6.0))}) for _ in range(SETS)
-    ]
+    sets = [NOMINAL.with_values({**lag, "armature_resistance": float(random.uniform(3.5, 6.0))}) for _ in range(SETS)]
     rates: dict[int, list[float]] = {1: [], 2: []}
     for _ in range(3):
         for threads, found in rates.items():

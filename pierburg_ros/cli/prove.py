@@ -21,6 +21,7 @@ from rich.table import Table
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.docket import DIAGNOSE
+from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import planned
 
 
@@ -70,13 +71,16 @@ class Reporter:
         self.progress = progress
         self.task = progress.add_task("blind trials", total=total)
         self.right = self.alarms = 0
+        self.description = "recording"
 
-    def __call__(self, done: int, total: int, last: dict[str, Any] | None) -> None:
-        if last is not None:
+    def __call__(self, done: int, total: int, last: dict[str, Any] | NotRecorded | None) -> None:
+        if isinstance(last, NotRecorded):
+            self.progress.console.print(f"Not recorded, left out: {last}", style="yellow")
+        elif last is not None:
             self.right += last["right"]
             self.alarms += last["false_alarm"]
-        description = f"{self.right} right, {self.alarms} false alarms" if last is not None else "recording"
-        self.progress.update(self.task, completed=done, total=total, description=description)
+            self.description = f"{self.right} right, {self.alarms} false alarms"
+        self.progress.update(self.task, completed=done, total=total, description=self.description)
 
 
 def summary(done: document.Run) -> Table:

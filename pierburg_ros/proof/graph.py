@@ -29,6 +29,10 @@ POLL = 1.0  # s
 ATTEMPTS = 3
 
 
+class NotRecorded(InputError):
+    """The graph did not record a trial, which says nothing about the diagnosis."""
+
+
 def record_over_graph(trial: Trial, path: Path, holdout: bool = False) -> Recorded:
     """Record the trial to the MCAP file `path` and give it back with the noise-free voltage beside it.
 
@@ -39,7 +43,7 @@ def record_over_graph(trial: Trial, path: Path, holdout: bool = False) -> Record
         run = read_back(trial, path)
         if np.diff(run.time).max() < 1.5 / trial.rate:
             return run
-    raise InputError(f"{trial.name} lost messages {ATTEMPTS} times. Let fewer trials run at a time.")
+    raise NotRecorded(f"{trial.name} lost messages {ATTEMPTS} times. Let fewer trials run at a time.")
 
 
 def attempt(trial: Trial, path: Path, holdout: bool) -> None:
@@ -97,9 +101,9 @@ def wait_for(path: Path, duration: float, nodes: list[subprocess.Popen[bytes]]) 
     begun = time.monotonic()
     while time.monotonic() - begun < duration or recorded(path) < duration:
         if any(node.poll() is not None for node in nodes):
-            raise InputError(f"a node ended while {path.name} was recorded; see {path.with_suffix('.log')}.")
+            raise NotRecorded(f"a node ended while {path.name} was recorded; see {path.with_suffix('.log')}.")
         if time.monotonic() - begun > PATIENCE:
-            raise InputError(f"{path.name} did not reach {duration:g} s within {PATIENCE:g} s of wall time.")
+            raise NotRecorded(f"{path.name} did not reach {duration:g} s within {PATIENCE:g} s of wall time.")
         time.sleep(POLL)
 
 

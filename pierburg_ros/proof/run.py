@@ -5,20 +5,22 @@ from __future__ import annotations
 import json
 import os
 import signal
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.proof.docket import DIAGNOSE, conduct, prepare, result, source_version
+from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import Plan
 from pierburg_ros.proof.trial import Trial
 
 RUN = "run.json"
-Report = Callable[[int, int, dict[str, Any] | None], None]
-"""Called with trials done, trials in all, and the last result."""
+Report = Callable[[int, int, dict[str, Any] | NotRecorded | None], None]
+"""Called with trials done, trials in all, and the last result: its score, or why it could not be recorded."""
 
 
 def begin(output: Path, plan: Plan) -> None:
@@ -43,7 +45,10 @@ def conduct_named(name: tuple[str, int], plan: Plan, output: Path, version: str,
     """Conduct a trial of the plan, or only prepare it; runs in a worker process."""
     trial = plan.trial(*name)
     folder = folder_of(trial, output)
-    return prepare(trial, folder) if command is None else conduct(trial, folder, version, command)
+    try:
+        return prepare(trial, folder) if command is None else conduct(trial, folder, version, command)
+    except NotRecorded as problem:
+        return problem
 
 
 def prove(
@@ -57,22 +62,34 @@ def prove(
     """Conduct the trials that are missing and give the results; after SIGINT or SIGTERM, those done by then.
 
     Without a `command` to diagnose, the recordings are only made. Results belong to one version of the
-    sources: that at the start.
+    sources: that at the start. A trial that could not be recorded is reported, and missing from the results.
     """
     begin(output, plan)
     version = source_version()
     work = partial(conduct_named, plan=plan, output=output, version=version, command=command)
-    with ProcessPoolExecutor(workers or os.cpu_count(), initializer=finish_when_interrupted) as pool:
-        pending = [pool.submit(work, name) for name in plan.names]
+    cores = workers or os.cpu_count() or 1
+    with ProcessPoolExecutor(cores, initializer=finish_when_interrupted) as pool:
         try:
-            for done, future in enumerate(as_completed(pending), start=1):
-                report(done, len(pending), future.result())
+            for done, last in enumerate(ended(pool, work, plan.names, cores), start=1):
+                report(done, plan.size, last)
         except KeyboardInterrupt:
-            pool.shutdown(cancel_futures=True)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+            pass
     return results(output, plan, version)
+
+
+def ended(pool: Executor, work: Callable[..., Any], names: Iterable[Any], workers: int) -> Iterator[Any]:
+    """What the work on each name gives, in the order in which it ends; never more under way than workers.
+
+    A pool that is given all of it at once begins some of it even after an interrupt.
+    """
+    left = iter(names)
+    under_way: set[Future[Any]] = set()
+    while True:
+        under_way |= {pool.submit(work, name) for name in islice(left, workers - len(under_way))}
+        if not under_way:
+            return
+        finished, under_way = wait(under_way, return_when=FIRST_COMPLETED)
+        yield from (future.result() for future in finished)
 
 
 def finish_when_interrupted() -> None:

@@ -10,6 +10,7 @@ import pytest
 from pierburg_ros.errors import InputError
 from pierburg_ros.proof import docket, document, plan, run
 from pierburg_ros.proof.concealment import draw
+from pierburg_ros.proof.graph import NotRecorded
 
 COMMAND = (sys.executable, str(Path(__file__).parent / "fake_diagnosis.py"))
 
@@ -103,6 +104,33 @@ def test_progress_is_reported_trial_by_trial(tmp_path, asked, short):
         report=lambda done, total, last: seen.append((done, total, last["name"])),
     )
     assert seen == [(1, 2, "consistent-000"), (2, 2, "consistent-001")]
+
+
+def test_a_trial_that_could_not_be_recorded_is_reported_and_left_out(tmp_path, asked, short, monkeypatch):
+    def refuse(trial, folder):
+        if trial.kind == "sensor_lag":
+            raise NotRecorded("lost messages")
+        return prepare(trial, folder)
+
+    prepare = docket.prepare
+    monkeypatch.setattr(docket, "prepare", refuse)
+    seen = []
+    results = prove(
+        tmp_path / "run",
+        {"consistent": 1, "sensor_lag": 1, "drift": 1},
+        report=lambda done, total, last: seen.append(str(last) if isinstance(last, NotRecorded) else last["name"]),
+    )
+    assert sorted(seen) == ["consistent-000", "drift-000", "lost messages"]
+    assert [result["name"] for result in results] == ["consistent-000", "drift-000"]
+
+
+def test_after_an_interrupt_no_further_trial_is_begun(tmp_path, asked, short):
+    def interrupt(done, total, last):
+        raise KeyboardInterrupt
+
+    results = prove(tmp_path / "run", {"consistent": 5}, report=interrupt)
+    assert [result["name"] for result in results] == ["consistent-000"]
+    assert len(asked.read_text().splitlines()) == 1
 
 
 def test_a_folder_of_another_seed_is_refused(tmp_path, asked, short):
