@@ -35,12 +35,9 @@ def explore_alternatives(exploration: Exploration, best: Fit) -> None:
 
 def alternatives(exploration: Exploration, best: Fit) -> list[Alternative]:
     """For each quantity of `best`, what may stand for it: one other quantity, or two parameters for an effect."""
-    limit = best.chi2 + TIED * repetition(best)
     own = set(quantities(best.explanation))
     found = []
-    for fit in list(exploration.fits.values()):
-        if fit.chi2 > limit or fit.explanation == best.explanation:
-            continue
+    for fit in exploration.tied(best, exploration.fits.values()):
         other = set(quantities(fit.explanation))
         lacking, added = own - other, other - own
         if len(lacking) != 1 or len(added) > 2:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -14,6 +14,7 @@ from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities,
 from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, starts_of
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
+from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, betters
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
@@ -30,8 +31,6 @@ NEAR = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early."""
 RIVALS = 3
 """Explanations of one size that are grown while none is adequate, besides every single drift."""
-SIGNIFICANT = 60.0
-"""Gain in chi2, in effective samples, that one more quantity must bring; calibrated on recordings with none."""
 GLANCE = 24.0
 """How much of a recording [s] a first look takes in."""
 LATE = 0.5
@@ -40,6 +39,9 @@ PROMISING = 15.0
 """Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up."""
 TIED = 12.0
 """Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
+REFUTED = 1.1
+"""Error on the judging samples, over the least of explanations that fit the training samples alike, from which one is
+out."""
 BRIEF, FULL = 6, 25
 """Iterations of a first look, and of a whole fit."""
 TASTE = 3
@@ -120,7 +122,7 @@ class Exploration:
             self.grow(Explanation())
             self._sharpened(1)
             best = self.preferred()
-            while best.explanation.size < LARGEST:
+            while best.explanation.size < LARGEST and not accounts_for_all(best, self.data):
                 for seed in self._promising(best):
                     self.grow(seed)
                     grown = self._sharpened(seed.size + 1)
@@ -144,19 +146,17 @@ class Exploration:
     def consider(self, explanation: Explanation, faded: Variant, rival: Fit) -> None:
         """Fit an explanation that stands for an effect of `rival` by other means, if it keeps up as the effect fades.
 
-        In one step the others would have to take over all of it at once, and events would jump. A load that pushes all
-        the time is a change of preload, and needs no search.
+        In one step the others would have to take over all of it at once, and events would jump; so would they if its
+        other effects gave way meanwhile. A load that pushes all the time is a change of preload, and needs no search.
         """
         values = rival.values
         if faded.effect == "external_load" and "spring_preload" in explanation.drifted:
             preload = values["spring_preload"] + values["external_load.torque"]
             self.add(explanation, {**values, "spring_preload": preload})
+        held = tuple(_faded(variant, rival, 1.0) for variant in explanation.variants)
         for share in FADING:
-            stage = explanation
-            if share > 0.0:
-                stage = Explanation(
-                    explanation.drifted, (*explanation.variants, _faded(faded, rival, share)), explanation.changed
-                )
+            fading = (*held, _faded(faded, rival, share)) if share > 0.0 else held
+            stage = Explanation(explanation.drifted, fading, explanation.changed)
             try:
                 look = self.glance.fit(stage, values, BRIEF)
             except InputError:
@@ -173,25 +173,29 @@ class Exploration:
         assert best is not None
         for size in range(1, LARGEST + 1):
             larger = self.best_of_size(size)
-            if larger is not None and self.gain(best, larger) > SIGNIFICANT * (size - best.explanation.size):
+            if larger is not None and betters(larger, best, self.data):
                 best = larger
-        return min([best, *self.rivals(best)], key=_preference)
+        return min(self.tied(best, self.of_size(best.explanation.size)), key=_preference)
 
-    def rivals(self, best: Fit) -> list[Fit]:
-        """Other explanations of the size of `best` that the data cannot tell from it."""
+    def tied(self, best: Fit, among: Iterable[Fit]) -> list[Fit]:
+        """Those `among` some fits, `best` one of them, that the data cannot tell from it.
+
+        They fit the training samples alike; whoever fails on the judging samples, where another does not, is out.
+        """
         limit = best.chi2 + TIED * repetition(best)
-        size = best.explanation.size
-        fits = [fit for fit in list(self.fits.values()) if fit.explanation.size == size and fit is not best]
-        return [fit for fit in fits if fit.chi2 < limit]
+        fits = [fit for fit in among if fit.chi2 <= limit]
+        judged = [self.search.judged(fit) for fit in fits]
+        lowest = min(judged)
+        worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))
+        return [fit for fit, chi2 in zip(fits, judged, strict=True) if chi2 <= worst]
 
     def best_of_size(self, size: int) -> Fit | None:
         """The best fit among explanations of `size` quantities, None where none was tried."""
-        fits = [fit for fit in list(self.fits.values()) if fit.explanation.size == size]
-        return min(fits, key=lambda fit: fit.chi2) if fits else None
+        return min(self.of_size(size), key=lambda fit: fit.chi2, default=None)
 
-    def gain(self, smaller: Fit, larger: Fit) -> float:
-        """What the larger explanation gains in chi2, counted in effective samples."""
-        return (smaller.chi2 - larger.chi2) / repetition(larger)
+    def of_size(self, size: int) -> list[Fit]:
+        """The fits of explanations of `size` quantities."""
+        return [fit for fit in list(self.fits.values()) if fit.explanation.size == size]
 
     def _pruned(self) -> Fit:
         """The preferred explanation after each of its parts has been fitted again from its values.

@@ -6,7 +6,7 @@ from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.diagnosis.conclusion import Conclusion, rmse
 from pierburg_ros.diagnosis.equivalence import visibility
 from pierburg_ros.diagnosis.explanation import AFTER, WHEN, Variant
-from pierburg_ros.diagnosis.explore import SIGNIFICANT, Exploration
+from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.diagnosis.hypotheses import starts_of
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
@@ -19,6 +19,7 @@ from pierburg_ros.diagnosis.schema import (
     NotTestable,
 )
 from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.significance import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.wording import effect_explanation, untestable
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
@@ -109,13 +110,13 @@ def fit_quality(exploration: Exploration, conclusion: Conclusion, final: Model) 
 def candidates(exploration: Exploration, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
     """The explanations tried, the best first: error on unseen samples, evidence, status."""
     data, chosen = exploration.data, conclusion.chosen
-    tied = {id(fit) for fit in exploration.rivals(chosen)}
+    tied = {id(fit) for fit in exploration.tied(chosen, exploration.of_size(chosen.explanation.size))}
     ranked = sorted(exploration.fits.values(), key=lambda fit: (fit is not chosen, fit.chi2))
     return [
         Candidate(
             id=identifier(fit),
             validation_rmse=rmse(data, fit.model, fit.switch, False),
-            evidence=exploration.gain(conclusion.recalibrated, fit),
+            evidence=gain(conclusion.recalibrated, fit),
             status="chosen" if fit is chosen else "tied" if id(fit) in tied else "rejected",
         )
         for fit in ranked[:most]

@@ -73,7 +73,15 @@ class Search:
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Training residual of `model` in units of the noise; large where it cannot be simulated."""
-        return np.nan_to_num(self.data.residual(model, switch)[self._training], nan=1e3, posinf=1e3, neginf=-1e3)
+        return self._finite(model, switch)[self._training]
+
+    def judged(self, fit: Fit) -> float:
+        """Chi2 of a fit on the judging samples; 0 where there are none."""
+        residual = self._finite(fit.model, fit.switch)[~self._training]
+        return float(residual @ residual)
+
+    def _finite(self, model: Model, switch: Switch | None) -> Signal:
+        return np.nan_to_num(self.data.residual(model, switch), nan=1e3, posinf=1e3, neginf=-1e3)
 
     def fit(
         self,

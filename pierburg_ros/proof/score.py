@@ -112,13 +112,17 @@ def ties_reported(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> boo
 
 
 def named_rightly(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], shown: bool) -> bool:
-    """Verdict and exact names; of an effect the recording does not show, silence is right as well."""
+    """Verdict and exact names; of an effect the recording does not show, silence is right as well.
+
+    Of several effects, those that the recording does not show beside the others may be left out.
+    """
     named = {effect["id"] for effect in diagnosis["effects"]}
     if truth["verdict"] == "unexplained":
         exact = diagnosis["verdict"] == "unexplained"
     else:
         concealed = {effect["id"] for effect in truth["effects"]}
-        exact = diagnosis["verdict"] == truth["verdict"] and named == concealed
+        owed = concealed.difference(truth["visibility"].get("faint", ()))
+        exact = diagnosis["verdict"] == truth["verdict"] and owed <= named <= concealed
     silent = diagnosis["verdict"] in ("consistent", "parameter_drift") and not named
     has_effect = truth["verdict"] in ("missing_physics", "unexplained")
     return (exact and ties_reported(truth, diagnosis)) or (has_effect and not shown and silent)

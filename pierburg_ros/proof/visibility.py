@@ -9,7 +9,7 @@ no method sees less than a few.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +49,7 @@ class Visibility:
     recalibrated_distance: float  # from the best explanation by drift of anything
     share_of_time: float  # smallest share of time that holds 80 % of the effect's energy
     bounds: dict[str, float]  # Cramer-Rao bound of each concealed parameter, deviation over value
+    faint: tuple[str, ...] = ()  # of several effects, those that one drift can stand for beside the others
 
     @property
     def shown(self) -> bool:
@@ -108,6 +109,30 @@ def relative_bounds(trial: Trial, run: Recorded, noise: float) -> dict[str, floa
     return {name: float(spread[k]) if not silent[k] else float("inf") for k, name in enumerate(unknown)}
 
 
+def nearest_drift(full: Signal, trial: Trial, run: Recorded, noise: float) -> tuple[float, Signal]:
+    """How far `full` [V] is from `trial` with one drift more [1], and what drift of anything leaves of it [V].
+
+    Drift of anything comes closer than a single one, which need not be tried where that stays far away.
+    """
+    base = trial.values
+    left = refitted(full, base, LUMPS, run)
+    nearest = distance(left, noise)
+    if nearest < VISIBLE:
+        rivals = [[*trial.drifted, name] for name in DRIFTING if name not in trial.drifted]
+        nearest = min(distance(refitted(full, base, names, run), noise) for names in rivals)
+    return nearest, left
+
+
+def faint(trial: Trial, full: Signal, run: Recorded, noise: float) -> tuple[str, ...]:
+    """Which of several effects one drift more can stand for, the others known; `full` is the voltage with all [V]."""
+
+    def rest(effect: str) -> Trial:
+        others = {name: value for name, value in trial.effects.items() if not name.startswith(f"{effect}.")}
+        return replace(trial, effects=others)
+
+    return tuple(e for e in trial.effect_ids if nearest_drift(full, rest(e), run, noise)[0] < VISIBLE)
+
+
 def visibility(trial: Trial, run: Recorded) -> Visibility:
     """Judge a recorded trial from its truth."""
     noise = noise_floor(trial)
@@ -115,12 +140,7 @@ def visibility(trial: Trial, run: Recorded) -> Visibility:
     if not trial.effects:
         return Visibility(noise, 0.0, nominal_rmse, 0.0, 0.0, 0.0, 0.0, {})
     full, bare = ideal(trial.values, run), ideal(trial.bare.values, run)
-    base = trial.bare.values
-    recalibrated = refitted(full, base, LUMPS, run)
-    nearest = distance(recalibrated, noise)
-    if nearest < VISIBLE:
-        rivals = [[*trial.drifted, name] for name in DRIFTING if name not in trial.drifted]
-        nearest = min(distance(refitted(full, base, names, run), noise) for names in rivals)
+    nearest, recalibrated = nearest_drift(full, trial.bare, run, noise)
     return Visibility(
         noise=noise,
         effect_rms=float(np.sqrt(np.mean((full - bare) ** 2))),
@@ -130,4 +150,5 @@ def visibility(trial: Trial, run: Recorded) -> Visibility:
         recalibrated_distance=distance(recalibrated, noise),
         share_of_time=share_holding(full - bare),
         bounds=relative_bounds(trial, run, noise),
+        faint=faint(trial, full, run, noise) if len(trial.effect_ids) > 1 else (),
     )

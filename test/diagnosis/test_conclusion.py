@@ -2,15 +2,17 @@
 
 import numpy as np
 import pytest
-from recordings import NOMINAL, PIERBURG, recording
+from recordings import NOMINAL, PIERBURG, recording, recording_under
 
 from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
-from pierburg_ros.diagnosis.evidence_data import evidence_of
+from pierburg_ros.diagnosis.evidence_data import evidence_of, training_blocks
 from pierburg_ros.diagnosis.explanation import WHEN
 from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.identification.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
 from pierburg_ros.recording import Channel, Recording
+
+DEAD = {"pwm_deadband.width": 0.02}
 
 
 def conclusion_on(changes: dict[str, float], seed: int = 0) -> Conclusion:
@@ -66,3 +68,17 @@ def test_a_change_in_the_middle_is_dated() -> None:
     assert found.verdict == "parameter_drift"
     assert found.chosen.explanation.changed == "armature_resistance"
     assert found.chosen.values["armature_resistance" + WHEN] == pytest.approx(13.4, abs=0.3)
+
+
+def test_of_explanations_that_fit_alike_one_that_fails_on_unseen_samples_is_out() -> None:
+    """A dead band is a larger preload while the duty stays above it: only a return at no duty tells them apart."""
+    random = np.random.default_rng(3)
+    time = np.arange(0.0, 24.0, 0.002)
+    duty = random.uniform(0.1, 0.36, 41)[(time / 0.6).astype(int)]
+    judging = ~training_blocks(time)
+    duty[judging & (time % 3.0 > 1.0)] = 0.0
+    duty[~judging & (time % 12.0 > 9.0)] = 0.3  # back at a valve that forgets where it came from
+    found = conclude(Exploration(evidence_of([recording_under(duty, time, DEAD, random)], PIERBURG), NOMINAL))
+    assert found.chosen.explanation.effects == ("pwm_deadband",)
+    assert found.chosen.explanation.drifted == ()
+    assert ("spring_preload",) not in {alternative.instead for alternative in found.alternatives}

@@ -45,3 +45,14 @@ def test_what_stands_for_viscous_friction_is_found_as_it_fades(pair: tuple[str, 
     push = 37.3 * value["torque_constant"] * value["supply_voltage"] / value["armature_resistance"]
     assert braking == pytest.approx((37.3 * 0.022) ** 2 / 4.139 + 0.025, rel=1e-3)
     assert push == pytest.approx(37.3 * 0.022 * 13.5 / 4.139, rel=1e-3)
+
+
+def test_what_stands_for_viscous_friction_beside_play_is_found_as_it_fades() -> None:
+    truth = {"viscous_friction.coefficient": 0.025, "backlash.gap": 0.04, "backlash.motor_friction_share": 0.1}
+    exploration = Exploration(evidence_of([recording(truth, duties=(-0.2, 0.36))], PIERBURG), NOMINAL)
+    play = Variant("backlash", ("gap", "motor_friction_share"))
+    best = exploration.add(Explanation((), (play, VISCOUS)), truth)
+    other = Explanation(("armature_resistance", "torque_constant"), (play,))
+    exploration.consider(other, VISCOUS, best)
+    assert best.ratio < 1.03
+    assert exploration.fits[other].ratio < 1.03

@@ -86,6 +86,19 @@ def test_silence_is_right_only_where_the_recording_does_not_show_the_effect():
     assert score(hidden, ANSWER, None, None).right
 
 
+def test_of_two_effects_one_that_the_recording_does_not_show_may_be_left_out():
+    faint = {"id": "backlash", "parameters": {"gap": {"value": 0.03, "unit": "rad"}}}
+    truth = changed(TRUTH, kind="two", effects=[*TRUTH["effects"], faint])
+    assert not score(truth, ANSWER, None, None).right
+    truth["visibility"] = {**TRUTH["visibility"], "faint": ["backlash"]}
+    assert score(truth, ANSWER, None, None).right
+    assert score(truth, changed(ANSWER, effects=[*ANSWER["effects"], *other_effect("backlash")]), None, None).right
+    assert not score(truth, changed(ANSWER, effects=other_effect("backlash")), None, None).right
+    assert not score(
+        truth, changed(ANSWER, effects=[*ANSWER["effects"], *other_effect("presliding")]), None, None
+    ).right
+
+
 def test_a_value_is_owed_only_where_its_bound_is_tight():
     far = copy.deepcopy(ANSWER)
     far["effects"][0]["parameters"]["time_constant"] = {"value": 0.02, "ci95": None}

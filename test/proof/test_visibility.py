@@ -7,7 +7,7 @@ import pytest
 
 from pierburg_ros.proof.bench import record
 from pierburg_ros.proof.concealment import draw
-from pierburg_ros.proof.visibility import noise_floor, relative_bounds, share_holding, visibility
+from pierburg_ros.proof.visibility import faint, ideal, noise_floor, relative_bounds, share_holding, visibility
 
 PLAIN = replace(draw("sensor_lag", 0, 3), duration=20.0, holdout_duration=5.0, rate=500.0, noise=0.002)
 
@@ -34,6 +34,14 @@ def test_viscous_friction_is_absorbed_by_two_drifts_but_not_by_one(run):
 def test_a_vanishing_effect_is_not_shown():
     faint = replace(PLAIN, effects={"sensor_lag.time_constant": 1e-6})
     assert not visibility(faint, record(faint)).shown
+
+
+def test_of_two_effects_the_one_that_leaves_no_mark_is_faint():
+    play = {"backlash.gap": 0.03, "backlash.motor_friction_share": 0.1}  # the preload keeps the flanks together
+    pair = replace(PLAIN, kind="two", effects={**play, "viscous_friction.coefficient": 0.03})
+    run = record(pair)
+    pushed = replace(run, duty=np.full_like(run.time, 0.5))
+    assert faint(pair, ideal(pair.values, pushed), pushed, 0.002) == ("backlash",)
 
 
 def test_without_an_effect_there_is_nothing_to_see():

@@ -1,0 +1,41 @@
+"""A larger explanation needs more than chance, and beside an effect more than what simulators differ by."""
+
+import pytest
+from recordings import NOMINAL, PIERBURG, recording
+
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, evidence_of
+from pierburg_ros.diagnosis.explanation import Explanation, Variant
+from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, allowance, betters, gain
+
+LAG = Variant("sensor_lag", ("time_constant",))
+TRUE = {"sensor_lag.time_constant": 0.012}
+
+
+def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[EvidenceData, list[Fit]]:
+    """Fits to a recording of the nominal valve with `changes`."""
+    data = evidence_of([recording({**TRUE, **changes})], PIERBURG)
+    return data, [Search(data, NOMINAL).fit(explanation, TRUE) for explanation in explanations]
+
+
+def test_what_simulators_differ_by_is_a_third_of_a_millivolt() -> None:
+    data, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
+    samples = lag.solution.residual.size
+    assert allowance(lag, data) == pytest.approx(samples * (0.0003 / data.noise) ** 2, rel=0.01)
+    assert allowance(drift, data) == 0.0
+
+
+def test_a_drift_too_small_to_be_more_than_that_is_not_named_beside_an_effect() -> None:
+    both = Explanation(("spring_preload",), (LAG,))
+    data, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
+    assert gain(lag, larger) > SIGNIFICANT
+    assert accounts_for_all(lag, data)
+    assert not betters(larger, lag, data)
+
+
+def test_a_plain_drift_beside_an_effect_betters_it() -> None:
+    both = Explanation(("spring_preload",), (LAG,))
+    data, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
+    assert not accounts_for_all(lag, data)
+    assert accounts_for_all(larger, data)
+    assert betters(larger, lag, data)
