@@ -74,8 +74,10 @@ def _settled(search: Search, fit: Fit) -> Fit:
 
 def _whole(data: EvidenceData) -> EvidenceData:
     """The data with every sample training: whole recordings are left out instead of blocks."""
-    runs = tuple(replace(run, training=np.ones(run.time.size, dtype=bool)) for run in data.runs)
-    return replace(data, runs=runs)
+    runs = (
+        replace(run, training=np.ones_like(run.training), choosing=np.zeros_like(run.choosing)) for run in data.runs
+    )
+    return replace(data, runs=tuple(runs))
 
 
 def _folds(data: EvidenceData) -> list[tuple[EvidenceData, EvidenceData]]:

@@ -125,5 +125,5 @@ def recalibrated(exploration: Exploration) -> Fit:
 
 def rmse(data: EvidenceData, model: Model, switch: Switch | None, training: bool) -> float | None:
     """Root mean squared error on training or on judging samples, measured unit; None where there are none."""
-    residual = data.residual(model, switch)[data.training if training else ~data.training]
+    residual = data.residual(model, switch)[data.training if training else data.judging]
     return rms(residual) * data.noise if residual.size else None

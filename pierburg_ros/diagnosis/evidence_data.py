@@ -1,4 +1,4 @@
-"""What the diagnosis looks at: recordings as arrays, split into samples that train and samples that judge."""
+"""What the diagnosis looks at: recordings as arrays, split into samples that train, that choose and that judge."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
 
-BLOCK = 3.0
-"""Length of the blocks [s] that train and judge in turn."""
-JUDGING = 4
-"""Every so many blocks one is kept from fit and selection, and judges."""
+BLOCK = 1.5
+"""Length of the blocks [s] that train, choose and judge in turn: some movements and standstills in each part."""
+CYCLE = 8
+"""Of so many blocks one chooses between explanations that fit the others alike, and one judges: no fit uses either."""
+CHOOSING, JUDGING = 2, 6
+"""Which they are."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class Switch:
 
 @dataclass(frozen=True)
 class Run:
-    """One recording, ready to be simulated: inputs, samples, start, and which samples train."""
+    """One recording, ready to be simulated: inputs, samples, start, and which samples train or choose; others judge."""
 
     name: str
     inputs: Inputs
@@ -42,6 +44,7 @@ class Run:
     initial_angle: float
     initial_velocity: float
     training: NDArray[np.bool_]
+    choosing: NDArray[np.bool_]
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -55,8 +58,17 @@ class Run:
 
     def cut(self, duration: float) -> Run:
         """The first `duration` [s] of the run."""
-        kept = slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2))
-        return replace(self, time=self.time[kept], measured=self.measured[kept], training=self.training[kept])
+        return self.part(slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2)))
+
+    def part(self, kept: slice) -> Run:
+        """Some successive samples of the run."""
+        return replace(
+            self,
+            time=self.time[kept],
+            measured=self.measured[kept],
+            training=self.training[kept],
+            choosing=self.choosing[kept],
+        )
 
 
 @dataclass(frozen=True)
@@ -91,6 +103,16 @@ class EvidenceData:
         return np.concatenate([run.training for run in self.runs])
 
     @property
+    def choosing(self) -> NDArray[np.bool_]:
+        """Which samples of `residual` choose between explanations that fit those that train alike."""
+        return np.concatenate([run.choosing for run in self.runs])
+
+    @property
+    def judging(self) -> NDArray[np.bool_]:
+        """Which samples of `residual` neither fit nor choice has used."""
+        return ~(self.training | self.choosing)
+
+    @property
     def time(self) -> Signal:
         """Time of each sample of `residual`, from the first sample of its own run [s]."""
         return np.concatenate([run.time for run in self.runs])
@@ -109,8 +131,8 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
     for recording in recordings:
         angle, velocity = Start.of(recording).state(nominal, recording.quantity)
         inputs, time = inputs_of(recording), recording.time
-        blocks = training_blocks(time)
-        runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, blocks))
+        parts = training_blocks(time), choosing_blocks(time)
+        runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, *parts))
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     return EvidenceData(actuator, tuple(runs), noise)
 
@@ -121,17 +143,22 @@ def rms(values: Signal) -> float:
 
 
 def training_blocks(time: Signal) -> NDArray[np.bool_]:
-    """True where a sample trains: blocks of 3 s, every fourth judging; a short recording gets shorter blocks."""
-    return np.asarray(_block(time) % JUDGING != JUDGING - 2)
+    """True where a sample trains."""
+    return ~np.isin(_block(time) % CYCLE, (CHOOSING, JUDGING))
+
+
+def choosing_blocks(time: Signal) -> NDArray[np.bool_]:
+    """True where a sample chooses between explanations."""
+    return np.asarray(_block(time) % CYCLE == CHOOSING)
 
 
 def held_back(data: EvidenceData) -> EvidenceData:
-    """`data` with a third of the training blocks kept from the fit as well, for a choice that is not judged yet."""
-    runs = (replace(run, training=run.training & (_block(run.time) % JUDGING != 0)) for run in data.runs)
+    """`data` with a third of the training blocks kept from the fit as well, for a choice before the last one."""
+    runs = (replace(run, training=run.training & (_block(run.time) % (CYCLE // 2) != 0)) for run in data.runs)
     return replace(data, runs=tuple(runs))
 
 
 def _block(time: Signal) -> NDArray[np.int_]:
-    """Number of the block of each sample."""
-    length = min(BLOCK, (time[-1] - time[0]) / (2 * JUDGING))
+    """Number of the block of each sample; a short recording gets shorter blocks."""
+    length = min(BLOCK, (time[-1] - time[0]) / (2 * CYCLE))
     return np.asarray(np.floor((time - time[0]) / length).astype(int))

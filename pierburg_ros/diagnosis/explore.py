@@ -40,7 +40,7 @@ PROMISING = 15.0
 TIED = 12.0
 """Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
 REFUTED = 1.1
-"""Error on the judging samples, over the least of explanations that fit the training samples alike, from which one is
+"""Error on the choosing samples, over the least of explanations that fit the training samples alike, from which one is
 out."""
 BRIEF, FULL = 6, 25
 """Iterations of a first look, and of a whole fit."""
@@ -178,16 +178,16 @@ class Exploration:
         return min(self.tied(best, self.of_size(best.explanation.size)), key=_preference)
 
     def tied(self, best: Fit, among: Iterable[Fit]) -> list[Fit]:
-        """Those `among` some fits, `best` one of them, that the data cannot tell from it.
+        """Those `among` some fits that the data cannot tell from `best`, itself if it is one of them.
 
-        They fit the training samples alike; whoever fails on the judging samples, where another does not, is out.
+        They fit the training samples alike; one that fails on the choosing samples, where another does not, is out.
         """
         limit = best.chi2 + TIED * repetition(best)
         fits = [fit for fit in among if fit.chi2 <= limit]
-        judged = [self.search.judged(fit) for fit in fits]
-        lowest = min(judged)
+        errors = [self.search.choosing_chi2(fit) for fit in fits]
+        lowest = min(errors, default=0.0)
         worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))
-        return [fit for fit, chi2 in zip(fits, judged, strict=True) if chi2 <= worst]
+        return [fit for fit, chi2 in zip(fits, errors, strict=True) if chi2 <= worst]
 
     def best_of_size(self, size: int) -> Fit | None:
         """The best fit among explanations of `size` quantities, None where none was tried."""

@@ -51,7 +51,7 @@ Way = Callable[[EvidenceData], Model]
 class Shape:
     """A model with its residual torque, and what that gains on samples that did not train it.
 
-    `base` is the model without it. `before` and `after` are RMSE over whole runs on the judging samples, measured
+    `base` is the model without it. `before` and `after` are RMSE over whole runs on the choosing samples, measured
     unit, of the base and of the shaped model. `over_time` holds the middle [s] of each stretch of the first
     recording and the mean torque [N.m] that the base lacks there, not a number at rest.
     """
@@ -83,7 +83,7 @@ def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str],
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
     words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
-    before, after = (rms(data.residual(m)[~data.training]) * data.noise for m in (base, model))
+    before, after = (rms(data.residual(m)[data.choosing]) * data.noise for m in (base, model))
     return Shape(model, base, before, after, words, over_time)
 
 

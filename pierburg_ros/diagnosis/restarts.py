@@ -34,15 +34,8 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
         if last - first < FEWEST:
             continue
         angle, velocity = _state(run, motion, int(first))
-        stretch = replace(
-            run,
-            time=run.time[first:last],
-            measured=run.measured[first:last],
-            training=run.training[first:last],
-            initial_angle=angle,
-            initial_velocity=velocity,
-        )
-        stretches.append(stretch)
+        part = run.part(slice(int(first), int(last)))
+        stretches.append(replace(part, initial_angle=angle, initial_velocity=velocity))
     return stretches
 
 

@@ -75,9 +75,9 @@ class Search:
         """Training residual of `model` in units of the noise; large where it cannot be simulated."""
         return self._finite(model, switch)[self._training]
 
-    def judged(self, fit: Fit) -> float:
-        """Chi2 of a fit on the judging samples; 0 where there are none."""
-        residual = self._finite(fit.model, fit.switch)[~self._training]
+    def choosing_chi2(self, fit: Fit) -> float:
+        """Chi2 of a fit on the samples that choose; 0 where there are none."""
+        residual = self._finite(fit.model, fit.switch)[self.data.choosing]
         return float(residual @ residual)
 
     def _finite(self, model: Model, switch: Switch | None) -> Signal:

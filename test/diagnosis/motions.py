@@ -24,7 +24,16 @@ def run_along(corners=CORNERS, duty=None, rate: float = 500.0, seed: int = 0) ->
     noise = NOISE * np.random.default_rng(seed).standard_normal(time.size)
     inputs = Inputs(time, np.zeros(time.size) if duty is None else duty(time))
     measured = hall(np.interp(time, times, angles)) + noise
-    return Run("drawn.mcap", inputs, time, measured, float(angles[0]), 0.0, np.ones(time.size, dtype=bool))
+    return Run(
+        "drawn.mcap",
+        inputs,
+        time,
+        measured,
+        float(angles[0]),
+        0.0,
+        np.ones(time.size, dtype=bool),
+        np.zeros(time.size, dtype=bool),
+    )
 
 
 def drawn(**options) -> Motion:

@@ -5,15 +5,25 @@ import pytest
 from recordings import NOISE, NOMINAL, PIERBURG, recording
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.diagnosis.evidence_data import evidence_of, training_blocks
+from pierburg_ros.diagnosis.evidence_data import evidence_of, held_back
 from pierburg_ros.errors import InputError
 
 
-def test_a_quarter_of_the_samples_judges_in_whole_blocks() -> None:
-    time = np.arange(0.0, 60.0, 0.002)
-    training = training_blocks(time)
-    assert np.mean(~training) == pytest.approx(0.25, abs=0.01)
-    assert np.count_nonzero(np.diff(training.astype(int))) == 10
+@pytest.mark.parametrize("duration", [5.0, 60.0])
+def test_of_eight_blocks_six_train_one_chooses_and_one_judges(duration: float) -> None:
+    data = evidence_of([recording({}, duration=duration)], PIERBURG)
+    assert np.mean(data.training) == pytest.approx(0.75, abs=0.02)
+    assert np.mean(data.choosing) == pytest.approx(0.125, abs=0.02)
+    assert np.all(data.training.astype(int) + data.choosing + data.judging == 1)
+    assert np.count_nonzero(np.diff(data.training.astype(int))) == (20 if duration == 60.0 else 8)
+
+
+def test_what_is_held_back_is_taken_from_training() -> None:
+    data = evidence_of([recording({})], PIERBURG)
+    inner = held_back(data)
+    assert np.mean(inner.training) == pytest.approx(0.5, abs=0.02)
+    assert np.all(data.training | ~inner.training)
+    np.testing.assert_array_equal(inner.choosing, data.choosing)
 
 
 def test_the_true_model_leaves_residuals_of_size_one() -> None:

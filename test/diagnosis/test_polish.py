@@ -16,7 +16,7 @@ VISCOUS = Variant("viscous_friction", ("coefficient",))
 def test_reaches_the_noise_where_a_descent_stops_early() -> None:
     truth = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}
     search = Search(evidence_of([recording(truth)], PIERBURG), NOMINAL)
-    start = {"static_friction.breakaway_torque": 0.25, "static_friction.stribeck_velocity": 0.2}
+    start = {"static_friction.breakaway_torque": 0.25, "static_friction.stribeck_velocity": 0.12}
     stopped = search.fit(Explanation((), (STICTION,)), start)
     found = polished(search, stopped)
     assert stopped.ratio > 2.0

@@ -30,18 +30,18 @@ def hidden():
 
 
 def test_takes_the_torque_that_was_hidden(hidden):
-    """Within 0.02 N.m: the prior holds the shape down where few samples ask for much."""
+    """Within 0.008 N.m up to 1.1 rad: further up the prior holds the shape down, since few samples ask for much."""
     _, shape = hidden
     grid = shape.model.residual_torque
     middle = grid["torque"][:, grid["velocity"] > 0.0].mean(axis=1)
-    inner = (grid["angle"] > 0.3) & (grid["angle"] < 1.4)
-    np.testing.assert_allclose(middle[inner], 0.04 * grid["angle"][inner] ** 3, atol=0.02)
+    inner = (grid["angle"] > 0.3) & (grid["angle"] < 1.1)
+    np.testing.assert_allclose(middle[inner], 0.04 * grid["angle"][inner] ** 3, atol=0.008)
 
 
 def test_lowers_the_error_on_samples_that_did_not_train_it(hidden):
     data, shape = hidden
     assert shape.after < 0.5 * shape.before
-    residual = data.residual(shape.model)[~data.training] * data.noise
+    residual = data.residual(shape.model)[data.choosing] * data.noise
     assert shape.after == pytest.approx(np.sqrt(np.mean(residual**2)))
 
 

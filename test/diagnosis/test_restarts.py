@@ -13,6 +13,7 @@ def test_cover_every_sample_once_and_keep_what_trains():
     assert len(cut.runs) == 13
     np.testing.assert_array_equal(np.concatenate([run.time for run in cut.runs]), data.runs[0].time)
     np.testing.assert_array_equal(cut.training, data.training)
+    np.testing.assert_array_equal(cut.choosing, data.choosing)
 
 
 def test_the_right_model_fits_stretches_nearly_down_to_the_noise():
