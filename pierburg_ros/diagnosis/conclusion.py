@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explore_alternatives
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, rms
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, after_choice, rms
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
-from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.explore import Exploration, label
+from pierburg_ros.diagnosis.hypotheses import ROUGH
+from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
-from pierburg_ros.diagnosis.search import Fit, repetition
+from pierburg_ros.diagnosis.search import Fit, Search, repetition
 from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
 from pierburg_ros.diagnosis.wording import by_evidence, by_grid
 from pierburg_ros.plant import Model
@@ -40,11 +42,13 @@ class Support:
 class Conclusion:
     """The chosen fit with its alternatives, and the nominal and recalibrated ones it is held against.
 
-    `supports` goes by the ids of the chosen effects.
+    `final` is the chosen explanation with its last values, `estimates` with their intervals; `supports` goes by the ids
+    of its effects.
     """
 
     verdict: Verdict
     chosen: Fit
+    final: Fit
     nominal: Fit
     recalibrated: Fit
     alternatives: list[Alternative]
@@ -58,18 +62,35 @@ def conclude(exploration: Exploration) -> Conclusion:
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)
+    verdict = verdict_on(chosen)
+    final, known = settled(exploration, chosen) if verdict != "unexplained" else (chosen, {})
     if step := coarse_step(exploration.data):
-        chosen = rounded(chosen, step)
+        chosen, final = rounded(chosen, step), rounded(final, step)
         exploration.fits[chosen.explanation] = chosen
+        verdict = verdict_on(chosen)
     return Conclusion(
-        verdict_on(chosen),
+        verdict,
         chosen,
+        final,
         exploration.fits[Explanation()],
         recalibrated(exploration),
         tied,
-        estimates(exploration.search, chosen),
+        known,
         {variant.effect: _support(exploration, chosen, variant) for variant in chosen.explanation.variants},
     )
+
+
+def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estimate]]:
+    """The chosen explanation fitted to all samples but those that judge, and its intervals.
+
+    Where the cost is rough, it is looked over again: a fit may account for all in a dent beside the lowest.
+    """
+    search = Search(after_choice(exploration.data), exploration.nominal)
+    fit = search.fit(chosen.explanation, chosen.values)
+    if ROUGH.intersection(fit.explanation.effects):
+        exploration.progress(f"{label(fit.explanation)}, last values")
+        fit = polished(search, fit)
+    return fit, estimates(search, fit)
 
 
 def _support(exploration: Exploration, chosen: Fit, variant: Variant) -> Support:

@@ -59,7 +59,7 @@ def diagnose(
     shape = None
     if conclusion.verdict == "unexplained":
         conclusion, shape = _beyond_the_catalogue(exploration, conclusion, progress)
-    model = shape.model if shape is not None else conclusion.chosen.model
+    model = shape.model if shape is not None else conclusion.final.model
     document = _document(recordings, exploration, conclusion, shape)
     return Result(document, model, data.runs, _signals(data.runs[0], conclusion, model))
 
@@ -83,20 +83,20 @@ def _beyond_the_catalogue(
         drifted = Explanation() if shape.base is exploration.nominal else explanation
         base, supports = search.fit(drifted, shape.base.values, 0), {}
     known = estimates(search, base)
-    reopened = replace(conclusion, chosen=base, alternatives=[], estimates=known, supports=supports)
+    reopened = replace(conclusion, chosen=base, final=base, alternatives=[], estimates=known, supports=supports)
     return reopened, shape if shape.after < CONFIRMED * shape.before else None
 
 
 def _document(
     recordings: Sequence[Recording], exploration: Exploration, conclusion: Conclusion, shape: Shape | None
 ) -> Diagnosis:
-    data, chosen = exploration.data, conclusion.chosen
-    model = shape.model if shape is not None else chosen.model
+    data, final = exploration.data, conclusion.final
+    model = shape.model if shape is not None else final.model
     effects = findings.effects(conclusion)
     parameters = findings.parameters(exploration, conclusion)
     quality = audit.data_quality(data.runs, data.actuator, data.noise)
     fit = findings.fit_quality(exploration, conclusion, model)
-    changes = findings.changes(chosen)
+    changes = findings.changes(final)
     hidden = findings.not_testable(exploration, conclusion)
     places, ranges = _located(data, conclusion)
     limits = audit.limits_of(data.runs, data.actuator, data.noise)
@@ -134,15 +134,15 @@ def _located(data: EvidenceData, conclusion: Conclusion) -> tuple[list[Location]
     """
     if conclusion.verdict in ("consistent", "parameter_drift"):
         return [], []
-    run, chosen = data.runs[0], conclusion.chosen
+    run, final = data.runs[0], conclusion.final
     motion = motion_of(run, data.actuator, data.noise)
     residual = run.measured - run.simulated(conclusion.recalibrated.model)
     mark = residual
-    if chosen.explanation.variants:
-        bare = chosen.model.with_values(
-            {f"{v.effect}.{name}": 0.0 for v in chosen.explanation.variants for name in EFFECT[v.effect].names}
+    if final.explanation.variants:
+        bare = final.model.with_values(
+            {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
         )
-        mark = run.simulated(chosen.model, chosen.switch) - run.simulated(bare)
+        mark = run.simulated(final.model, final.switch) - run.simulated(bare)
     found = windows(motion.time, mark**2)
     return locations(motion, residual, found), regimes(motion, residual)
 
@@ -166,5 +166,5 @@ def _signals(run: Run, conclusion: Conclusion, model: Model) -> dict[str, Signal
         "duty": run.inputs.duty[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
-        "final": run.simulated(model, conclusion.chosen.switch),
+        "final": run.simulated(model, conclusion.final.switch),
     }

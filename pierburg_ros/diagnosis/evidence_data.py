@@ -158,6 +158,12 @@ def held_back(data: EvidenceData) -> EvidenceData:
     return replace(data, runs=tuple(runs))
 
 
+def after_choice(data: EvidenceData) -> EvidenceData:
+    """`data` with what has chosen training as well, for the last fit after the choice."""
+    runs = (replace(run, training=run.training | run.choosing, choosing=run.choosing & False) for run in data.runs)
+    return replace(data, runs=tuple(runs))
+
+
 def _block(time: Signal) -> NDArray[np.int_]:
     """Number of the block of each sample; a short recording gets shorter blocks."""
     length = min(BLOCK, (time[-1] - time[0]) / (2 * CYCLE))

@@ -27,7 +27,7 @@ from pierburg_ros.plant import Model
 
 def effects(conclusion: Conclusion) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    chosen = conclusion.chosen
+    chosen = conclusion.final
     found = []
     for variant in chosen.explanation.variants:
         declared = EFFECT[variant.effect]
@@ -66,7 +66,7 @@ def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
 def parameters(exploration: Exploration, conclusion: Conclusion) -> dict[str, BaseParameter]:
     """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted."""
     actuator = exploration.data.actuator
-    chosen = conclusion.chosen
+    chosen = conclusion.final
     result = {}
     for name in actuator.parameters:
         drifted = name in chosen.explanation.drifted or name == chosen.explanation.changed
@@ -101,7 +101,7 @@ def fit_quality(exploration: Exploration, conclusion: Conclusion, final: Model) 
         return Errors(
             nominal_rmse=rmse(data, conclusion.nominal.model, None, training),
             recalibrated_rmse=rmse(data, conclusion.recalibrated.model, None, training),
-            final_rmse=rmse(data, final, conclusion.chosen.switch, training),
+            final_rmse=rmse(data, final, conclusion.final.switch, training),
         )
 
     return FitQuality(noise_floor=data.noise, training=errors(True), validation=errors(False))
@@ -131,7 +131,7 @@ def identifier(fit: Fit) -> str:
 
 def not_testable(exploration: Exploration, conclusion: Conclusion) -> list[NotTestable]:
     """Effects that could act at a plausible strength without a mark in these recordings."""
-    chosen = conclusion.chosen
+    chosen = conclusion.final
     seen: dict[str, float] = {}
     for variant, starts in starts_of(exploration.data, chosen.model).items():
         if variant.effect in chosen.explanation.effects or not variant.free:

@@ -14,8 +14,12 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
-LEAPS = (-1.0, -0.5, 0.5, 1.0)
+LEAPS = (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0)
 """Logarithms of the factors by which the second round moves parameters that are searched by theirs."""
+SCAN = np.geomspace(0.002, 0.5, 24)
+"""Shares by which each other parameter of the same effect is then moved: the valley bends, and runs beside a cliff."""
+LANDINGS = 3
+"""From how many of the best points so found descents start."""
 FINEST, COARSEST = 1e-2, 10.0
 """Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
@@ -29,15 +33,16 @@ WIDEST = 0.25
 def polished(search: Search, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
-    One descent starts at the lowest of many points. Others start far along the weakest axis: the cost's valley
-    bends, so that no point on a straight line shows how low it runs there. Rounds take fine and coarse differences
+    One descent starts at the lowest of many points. Others start far along the weakest axis, and once where leaps along
+    logarithmic parameters land: the cost's valley bends, so that no point on a straight line shows how low it runs
+    there. Rounds take fine and coarse differences
     for the Jacobian in turn; the search ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
-        starts += [_values(search, fit, leap) for leap in _leaps(fit) if number == 1]
+        starts += _landings(search, fit) if number == 1 else []
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
@@ -47,11 +52,27 @@ def polished(search: Search, fit: Fit) -> Fit:
     return fit
 
 
-def _leaps(fit: Fit) -> list[Signal]:
-    """Moves of each parameter that is searched by its logarithm, far beyond what the axes call plausible."""
-    names = fit.explanation.names
-    units = [np.eye(len(names))[i] for i, name in enumerate(names) if name in LOGARITHMIC]
-    return [factor * unit for unit in units for factor in LEAPS]
+def _landings(search: Search, fit: Fit) -> list[dict[str, float]]:
+    """Where to descend from after a leap of one parameter: the lowest points among scans of those beside it."""
+    names, found = fit.explanation.names, []
+    for place, name in enumerate(names):
+        beside = [i for i, other in enumerate(names) if i != place and other.split(".")[0] == name.split(".")[0]]
+        for leap in LEAPS if name in LOGARITHMIC else ():
+            move = leap * np.eye(len(names))[place]
+            units = [fit.solution.point[i] * np.eye(len(names))[i] for i in beside]
+            scans = [move + side * share * unit for unit in units for share in SCAN for side in (-1.0, 1.0)]
+            found.append(min(_measured(search, fit, [move, *scans]), key=lambda landing: landing[0]))
+    return [values for _, values in sorted(found, key=lambda landing: landing[0])[:LANDINGS]]
+
+
+def _measured(search: Search, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
+    """The cost where each of the `moves` leads, and the values there."""
+    measured = []
+    for move in moves:
+        values = _values(search, fit, move)
+        residual = search.residual(*search.models(fit.explanation, values))
+        measured.append((float(residual @ residual), values))
+    return measured
 
 
 def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:
@@ -65,15 +86,8 @@ def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:
 
 def _lowest(search: Search, fit: Fit, axes: list[Signal]) -> dict[str, float]:
     """Values at the lowest point on the axes, those of `fit` where none is lower."""
-    best, found = fit.chi2, fit.values
-    for axis in axes:
-        for reach in REACHES:
-            for side in (-reach, reach):
-                values = _values(search, fit, side * axis)
-                residual = search.residual(*search.models(fit.explanation, values))
-                if float(residual @ residual) < best:
-                    best, found = float(residual @ residual), values
-    return found
+    moves = [side * axis for axis in axes for reach in REACHES for side in (-reach, reach)]
+    return min([(fit.chi2, fit.values), *_measured(search, fit, moves)], key=lambda point: point[0])[1]
 
 
 def _values(search: Search, fit: Fit, move: Signal) -> dict[str, float]:
