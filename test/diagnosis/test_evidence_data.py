@@ -5,7 +5,7 @@ import pytest
 from recordings import NOISE, NOMINAL, PIERBURG, recording
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.diagnosis.evidence_data import evidence_of, held_back
+from pierburg_ros.diagnosis.evidence_data import after_choice, evidence_of, held_back
 from pierburg_ros.errors import InputError
 
 
@@ -35,3 +35,11 @@ def test_the_true_model_leaves_residuals_of_size_one() -> None:
 def test_another_actuator_is_refused() -> None:
     with pytest.raises(InputError, match=r"holds hall_voltage, but actuator xl330 measures position"):
         evidence_of([recording({})], read_actuator("xl330"))
+
+
+def test_after_the_choice_all_train_but_what_judges() -> None:
+    data = evidence_of([recording({})], PIERBURG)
+    last = after_choice(data)
+    np.testing.assert_array_equal(last.training, ~data.judging)
+    np.testing.assert_array_equal(last.judging, data.judging)
+    assert not np.any(last.choosing)
