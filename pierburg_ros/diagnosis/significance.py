@@ -9,7 +9,7 @@ SIGNIFICANT = 60.0
 """Gain in chi2, in effective samples, that one more quantity must bring; calibrated on recordings with none."""
 FORMULATION = 1.15e-4
 """What simulations of one effect may differ by [rad, root mean square], each right in its own way: 0.3 mV of Hall
-voltage, the most that half the step changes for any effect in the second formulation (`docs/proof.md`)."""
+voltage, the most that going from steps of 10 us to 5 changes for any effect in the textbook form (`docs/proof.md`)."""
 
 
 def gain(smaller: Fit, larger: Fit) -> float:

@@ -9,7 +9,8 @@ import pytest
 from pierburg_ros.errors import InputError
 from pierburg_ros.proof.excitation import duty_sequence
 from pierburg_ros.proof.formulation import TextbookPlant, simulate_textbook
-from pierburg_ros.proof.formulation.values import CATALOGUE, OUTSIDE
+from pierburg_ros.proof.formulation.textbook import usual_step
+from pierburg_ros.proof.formulation.values import CATALOGUE, OUTSIDE, textbook_values
 from pierburg_ros.proof.strengths import strength
 from pierburg_ros.recording import read_recording
 
@@ -29,8 +30,9 @@ def test_halving_the_step_changes_nothing_that_a_sensor_sees(effect):
     random = np.random.default_rng(5)
     duty = duty_sequence(time, random, holdout=False)
     values = strength(effect, random)
-    coarse, fine = (simulate_textbook(values, time, duty, longest_step=h) for h in (1e-5, 5e-6))
-    assert np.abs(coarse - fine).max() < 0.0003
+    step = usual_step(textbook_values(values))
+    coarse, fine = (simulate_textbook(values, time, duty, longest_step=h) for h in (step, step / 2))
+    assert np.abs(coarse - fine).max() < 0.0002
 
 
 def label_values(label):
