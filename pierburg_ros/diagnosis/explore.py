@@ -200,12 +200,15 @@ class Exploration:
     def _pruned(self) -> Fit:
         """The preferred explanation after each of its parts has been fitted again from its values.
 
-        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins.
+        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins; where its
+        cost is rough and it comes near, it is looked over again.
         """
         best = self.preferred()
         while True:
             for quantity in quantities(best.explanation):
-                self.add(without(best.explanation, quantity), best.values)
+                smaller = self.add(without(best.explanation, quantity), best.values)
+                if ROUGH.intersection(smaller.explanation.effects) and smaller.ratio < COMPARABLE * best.ratio:
+                    self._sharpen(smaller)
             kept = self.preferred()
             if kept.explanation.size >= best.explanation.size:
                 return kept

@@ -14,12 +14,12 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
-LEAPS = (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0)
-"""Logarithms of the factors by which the second round moves parameters that are searched by theirs."""
-SCAN = np.geomspace(0.002, 0.5, 24)
+LEAPS = {(-0.1, -0.05, 0.05, 0.1): 1, (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0): 3}
+"""Logarithms of the factors by which the first round moves parameters that are searched by theirs, near and far, and
+from how many of the best points so found descents start."""
+_SHARES = np.concatenate([np.geomspace(0.002, 0.02, 8), np.linspace(0.04, 0.5, 24)])
+SCAN = np.concatenate([-_SHARES, _SHARES])
 """Shares by which each other parameter of the same effect is then moved: the valley bends, and runs beside a cliff."""
-LANDINGS = 3
-"""From how many of the best points so found descents start."""
 FINEST, COARSEST = 1e-2, 10.0
 """Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
@@ -42,7 +42,7 @@ def polished(search: Search, fit: Fit) -> Fit:
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
-        starts += _landings(search, fit) if number == 1 else []
+        starts += _landings(search, fit) if number == 0 else []
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
@@ -54,15 +54,19 @@ def polished(search: Search, fit: Fit) -> Fit:
 
 def _landings(search: Search, fit: Fit) -> list[dict[str, float]]:
     """Where to descend from after a leap of one parameter: the lowest points among scans of those beside it."""
-    names, found = fit.explanation.names, []
-    for place, name in enumerate(names):
-        beside = [i for i, other in enumerate(names) if i != place and other.split(".")[0] == name.split(".")[0]]
-        for leap in LEAPS if name in LOGARITHMIC else ():
-            move = leap * np.eye(len(names))[place]
-            units = [fit.solution.point[i] * np.eye(len(names))[i] for i in beside]
-            scans = [move + side * share * unit for unit in units for share in SCAN for side in (-1.0, 1.0)]
-            found.append(min(_measured(search, fit, [move, *scans]), key=lambda landing: landing[0]))
-    return [values for _, values in sorted(found, key=lambda landing: landing[0])[:LANDINGS]]
+    names, landings = fit.explanation.names, []
+    units = np.eye(len(names))
+    for leaps, most in LEAPS.items():
+        found = []
+        for name, unit in zip(names, units, strict=True):
+            effect = name.split(".")[0]
+            beside = [i for i, other in enumerate(names) if other != name and other.split(".")[0] == effect]
+            scales = [fit.solution.point[i] * units[i] for i in beside]
+            for leap in leaps if name in LOGARITHMIC else ():
+                scans = [leap * unit + share * scale for scale in scales for share in SCAN]
+                found.append(min(_measured(search, fit, [leap * unit, *scans]), key=lambda landing: landing[0]))
+        landings += [values for _, values in sorted(found, key=lambda landing: landing[0])[:most]]
+    return landings
 
 
 def _measured(search: Search, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:

@@ -13,6 +13,8 @@ from pierburg_ros.cli.app import main
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import write_simulated
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
 
 def run(*arguments: str) -> int:
     with pytest.raises(SystemExit) as ending:
@@ -102,3 +104,18 @@ def test_without_movement_nothing_is_claimed(tmp_path: Path) -> None:
     assert document["effects"] == []
     assert document["data_quality"]["limits"]
     assert len(document["not_testable"]) >= 15
+
+
+def test_a_worn_valve_under_the_controller_lacks_stiction_and_nothing_else(tmp_path: Path) -> None:
+    """The walk of the README: few jumps, so that a fit stops in a dent, where a ripple would seem to help."""
+    sources = ["--model", str(EXAMPLES / "worn_valve.yaml"), "--setpoints", str(EXAMPLES / "setpoints.csv")]
+    with pytest.raises(SystemExit):
+        main(["simulate", *sources, "--noise", "0.003", "--output", str(tmp_path / "walk")])
+    assert run(str(tmp_path / "walk" / "simulated.mcap"), "--output", str(tmp_path / "out")) == 0
+    found = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert [effect["id"] for effect in found["effects"]] == ["static_friction"]
+    assert found["parameters"]["armature_resistance"]["value"] == pytest.approx(4.55, rel=0.001)
+    values = found["effects"][0]["parameters"]
+    assert values["breakaway_torque"]["value"] == pytest.approx(0.27, rel=0.01)
+    low, high = values["stribeck_velocity"]["ci95"]
+    assert low < 0.1 < high
