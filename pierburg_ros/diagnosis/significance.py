@@ -11,6 +11,9 @@ FORMULATION = 1.15e-4
 """What simulations of one effect may differ by [rad, root mean square], each right in its own way: 0.3 mV of Hall
 voltage, the most that going from steps of 10 us to 5 changes for any effect in the textbook form (`docs/proof.md`)."""
 
+WHITE = 1.5
+"""Repetition of a residual up to which it passes for white noise: its estimated size is uncertain by some percent."""
+
 
 def gain(smaller: Fit, larger: Fit) -> float:
     """What the larger explanation gains in chi2, counted in effective samples."""
@@ -24,8 +27,9 @@ def betters(larger: Fit, smaller: Fit, data: EvidenceData) -> bool:
 
 
 def accounts_for_all(fit: Fit, data: EvidenceData) -> bool:
-    """Whether what an explanation with an effect leaves beyond the noise may be the difference of simulators."""
-    return bool(fit.explanation.variants) and fit.chi2 < fit.solution.residual.size + allowance(fit, data)
+    """Whether an explanation with an effect leaves white noise, and beyond it no more than simulators may differ by."""
+    small = bool(fit.explanation.variants) and fit.chi2 < fit.solution.residual.size + allowance(fit, data)
+    return small and repetition(fit) < WHITE
 
 
 def allowance(fit: Fit, data: EvidenceData) -> float:

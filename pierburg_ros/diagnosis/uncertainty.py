@@ -22,6 +22,8 @@ DENTED = 12.0
 """Rise of chi2 allowed where the cost is rough: the best of many dents is lower than the true one by luck."""
 PATIENCE = 3
 """How many reaches without success end the search where the cost is rough: a fit may have ended in a dent."""
+FIRST = 1e-5
+"""Share of its range by which a quantity without a slope is moved first."""
 BRIEF = 4
 """Iterations in which the other quantities are fitted again."""
 HALF_KNOWN = 0.5
@@ -52,22 +54,44 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     rise = spread(fit)
     covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * rise
     weak = np.diag(normal) <= 1e-12 * max(float(np.max(np.diag(normal), initial=0.0)), 1e-300)
-    reach = np.where(weak, np.inf, SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0)))
+    reach = SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     rough = bool(ROUGH.intersection(fit.explanation.effects))
     limit = fit.chi2 + (DENTED if rough else SURE**2) * rise
     places = range(len(fit.explanation.names))
     coordinates = search.coordinates(fit.explanation)
-    sides = [(place, side * float(reach[place])) for place in places for side in (-1.0, 1.0)]
+    sides = [
+        (place, side * (_plateau(search, fit, place, side, limit) if weak[place] else float(reach[place])))
+        for place in places
+        for side in (-1.0, 1.0)
+    ]
     with ThreadPoolExecutor(2) as pool:
         ends = list(pool.map(lambda side: _ends(search, fit, side[0], side[1], limit, PATIENCE if rough else 1), sides))
     allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
     result = {}
-    for place, name in enumerate(fit.explanation.names):
+    for name in fit.explanation.names:
         low, high = (pick(values[name] for values in allowed) for pick in (min, max))
         value = fit.values[name]
         known = max(high - value, value - low) <= HALF_KNOWN * abs(value)
-        result[name] = Estimate(value, low, high, bool(known and np.isfinite(reach[place])))
+        result[name] = Estimate(value, low, high, bool(known))
     return result
+
+
+def _plateau(search: Search, fit: Fit, place: int, side: float, limit: float) -> float:
+    """How far a quantity without a slope moves alone until chi2 passes the `limit`, to a factor of two.
+
+    At most to its bound. A load may begin at any moment while the shaft stands still.
+    """
+    coordinates = search.coordinates(fit.explanation)
+    lower, upper = (float(bound[place]) for bound in coordinates.bounds())
+    reach = FIRST * (upper - lower)
+    while reach < upper - lower:
+        point = fit.solution.point.copy()
+        point[place] = np.clip(point[place] + side * reach, lower, upper)
+        residual = search.residual(*search.models(fit.explanation, coordinates.values(point)))
+        if float(residual @ residual) > limit:
+            break
+        reach *= 2.0
+    return reach
 
 
 def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:
@@ -88,7 +112,7 @@ def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float, pati
 
     nowhere = np.zeros(best.size)
     points, valley = [moved(reach, nowhere)], nowhere
-    for _ in range(DOUBLINGS if np.isfinite(reach) else 0):
+    for _ in range(DOUBLINGS):
         starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
         tried = {tuple(start): start for start in starts}.values()
         fits = [search.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried]

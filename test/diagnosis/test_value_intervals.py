@@ -89,3 +89,14 @@ def test_a_rough_cost_does_not_shorten_the_interval() -> None:
     low, high = interval(rippled, X)
     assert 2.0 < high < 3.1
     assert -3.1 < low < -1.0
+
+
+def test_a_quantity_without_a_slope_reaches_to_the_ends_of_its_plateau() -> None:
+    """Nothing changes from 0.5 to 3; beyond, chi2 jumps."""
+    low, high = interval(lambda x, y: [100.0 * float(not 0.5 < x < 3.0), y - 1.0], X)
+    assert 0.0 <= low <= 0.5
+    assert 3.0 <= high <= 5.0
+
+
+def test_a_quantity_that_nothing_depends_on_reaches_to_its_bounds() -> None:
+    assert interval(lambda x, y: [y - 1.0], X) == (-WIDE, WIDE)
