@@ -54,9 +54,8 @@ def select(exploration: Exploration, start: Fit) -> Shared:
     search = Search(data, exploration.nominal)
     folds = _folds(data)
     with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
-        chosen = min(
-            (_settled(search, fit) for fit in (start, search.fit(start.explanation))), key=lambda fit: fit.chi2
-        )
+        settled = (_settled(search, fit) for fit in (start, search.fit(start.explanation)))
+        chosen = min(settled, key=lambda fit: fit.chi2)
         error = rms(_left_out(search, folds, chosen))
         while len(chosen.explanation.variants) < MOST:
             tasks = _tasks(exploration, data, chosen)
@@ -80,10 +79,7 @@ def _settled(search: Search, fit: Fit) -> Fit:
 
 def _whole(data: EvidenceData) -> EvidenceData:
     """The data with every sample training: whole recordings are left out instead of blocks."""
-    runs = (
-        replace(run, training=np.ones_like(run.training), choosing=np.zeros_like(run.choosing)) for run in data.runs
-    )
-    return replace(data, runs=tuple(runs))
+    return replace(data, runs=tuple(run.trained_on(np.ones_like(run.training)) for run in data.runs))
 
 
 def _folds(data: EvidenceData) -> list[tuple[EvidenceData, EvidenceData]]:

@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explor
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, after_choice, rms
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.explore import Exploration, label
-from pierburg_ros.diagnosis.hypotheses import ROUGH
+from pierburg_ros.diagnosis.hypotheses import is_rough
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
@@ -62,14 +62,12 @@ def conclude(exploration: Exploration) -> Conclusion:
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)
-    verdict = verdict_on(chosen)
-    final, known = settled(exploration, chosen) if verdict != "unexplained" else (chosen, {})
+    final, known = settled(exploration, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
     if step := coarse_step(exploration.data):
         chosen, final = rounded(chosen, step), rounded(final, step)
         exploration.fits[chosen.explanation] = chosen
-        verdict = verdict_on(chosen)
     return Conclusion(
-        verdict,
+        verdict_on(chosen),
         chosen,
         final,
         exploration.fits[Explanation()],
@@ -87,7 +85,7 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
     """
     search = Search(after_choice(exploration.data), exploration.nominal)
     fit = search.fit(chosen.explanation, chosen.values)
-    if ROUGH.intersection(fit.explanation.effects):
+    if is_rough(fit.explanation):
         exploration.progress(f"{label(fit.explanation)}, last values")
         fit = polished(search, fit)
     return fit, estimates(search, fit)

@@ -70,6 +70,10 @@ class Run:
             choosing=self.choosing[kept],
         )
 
+    def trained_on(self, training: NDArray[np.bool_]) -> Run:
+        """The run with other samples training, shape (samples,); what trains chooses no longer."""
+        return replace(self, training=training, choosing=self.choosing & ~training)
+
 
 @dataclass(frozen=True)
 class EvidenceData:
@@ -154,13 +158,13 @@ def choosing_blocks(time: Signal) -> NDArray[np.bool_]:
 
 def held_back(data: EvidenceData) -> EvidenceData:
     """`data` with a third of the training blocks kept from the fit as well, for a choice before the last one."""
-    runs = (replace(run, training=run.training & (_block(run.time) % (CYCLE // 2) != 0)) for run in data.runs)
+    runs = (run.trained_on(run.training & (_block(run.time) % (CYCLE // 2) != 0)) for run in data.runs)
     return replace(data, runs=tuple(runs))
 
 
 def after_choice(data: EvidenceData) -> EvidenceData:
     """`data` with what has chosen training as well, for the last fit after the choice."""
-    runs = (replace(run, training=run.training | run.choosing, choosing=run.choosing & False) for run in data.runs)
+    runs = (run.trained_on(run.training | run.choosing) for run in data.runs)
     return replace(data, runs=tuple(runs))
 
 

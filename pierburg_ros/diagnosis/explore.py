@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
-from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, starts_of
+from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, is_rough, starts_of
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
 from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, betters
@@ -207,7 +207,7 @@ class Exploration:
         while True:
             for quantity in quantities(best.explanation):
                 smaller = self.add(without(best.explanation, quantity), best.values)
-                if ROUGH.intersection(smaller.explanation.effects) and smaller.ratio < COMPARABLE * best.ratio:
+                if _deserves_sharpening(smaller, best):
                     self._sharpen(smaller)
             kept = self.preferred()
             if kept.explanation.size >= best.explanation.size:
@@ -334,8 +334,7 @@ class Exploration:
     def _worth_sharpening(self, finished: list[Fit], size: int) -> list[Fit]:
         """Whole fits with a rough cost that come near the best of their `size`."""
         best = self.best_of_size(size)
-        rough = [fit for fit in finished if ROUGH.intersection(fit.explanation.effects)]
-        rough = [fit for fit in rough if best is not None and fit.ratio < COMPARABLE * best.ratio]
+        rough = [fit for fit in finished if best is not None and _deserves_sharpening(fit, best)]
         return sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]
 
     def _finish(self, look: Fit) -> Fit:
@@ -348,6 +347,11 @@ class Exploration:
             self._sharp.add(fit.explanation)
             self.progress(f"{label(fit.explanation)}, once more")
             self.fits[fit.explanation] = polished(self.search, fit)
+
+
+def _deserves_sharpening(fit: Fit, best: Fit) -> bool:
+    """Whether the cost of a fit is rough, and it comes near the best."""
+    return is_rough(fit.explanation) and fit.ratio < COMPARABLE * best.ratio
 
 
 def _best_of_each(looks: list[Look]) -> list[Look]:

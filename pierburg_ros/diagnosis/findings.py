@@ -27,11 +27,11 @@ from pierburg_ros.plant import Model
 
 def effects(conclusion: Conclusion) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    chosen = conclusion.final
+    final = conclusion.final
     found = []
-    for variant in chosen.explanation.variants:
+    for variant in final.explanation.variants:
         declared = EFFECT[variant.effect]
-        values = {name: chosen.model.values[f"{variant.effect}.{name}"] for name in declared.names}
+        values = {name: final.model.values[f"{variant.effect}.{name}"] for name in declared.names}
         parameters = {
             name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], declared.parameter(name).unit)
             for name in declared.names
@@ -66,15 +66,15 @@ def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
 def parameters(exploration: Exploration, conclusion: Conclusion) -> dict[str, BaseParameter]:
     """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted."""
     actuator = exploration.data.actuator
-    chosen = conclusion.final
+    final = conclusion.final
     result = {}
     for name in actuator.parameters:
-        drifted = name in chosen.explanation.drifted or name == chosen.explanation.changed
+        drifted = name in final.explanation.drifted or name == final.explanation.changed
         known = conclusion.estimates.get(name)
         identifiable = known.identifiable if known else name in conclusion.recalibrated.explanation.drifted
         result[name] = BaseParameter(
             nominal=exploration.nominal.values[name],
-            value=chosen.model.values[name],
+            value=final.model.values[name],
             unit=UNITS[name][0],
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
@@ -131,12 +131,12 @@ def identifier(fit: Fit) -> str:
 
 def not_testable(exploration: Exploration, conclusion: Conclusion) -> list[NotTestable]:
     """Effects that could act at a plausible strength without a mark in these recordings."""
-    chosen = conclusion.final
+    final = conclusion.final
     seen: dict[str, float] = {}
-    for variant, starts in starts_of(exploration.data, chosen.model).items():
-        if variant.effect in chosen.explanation.effects or not variant.free:
+    for variant, starts in starts_of(exploration.data, final.model).items():
+        if variant.effect in final.explanation.effects or not variant.free:
             continue
-        mark = visibility(exploration, chosen, variant, [dict(start) for start in starts[:4]])
+        mark = visibility(exploration, final, variant, [dict(start) for start in starts[:4]])
         seen[variant.effect] = max(seen.get(variant.effect, 0.0), mark)
     return [
         NotTestable(id=effect, why=untestable(mark), record=EFFECT[effect].record)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
-from pierburg_ros.diagnosis.explanation import Variant
+from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.torque_residual import missing_torque, rhythms, spans, tight_spots
 from pierburg_ros.plant import Model
 
@@ -68,6 +68,11 @@ FREQUENCIES = (0.1, 20.0)
 """Range in which the rhythm of a load is looked for [Hz]."""
 ROUGH = frozenset({"static_friction", "backlash", "position_dependent_friction", "external_load", "input_delay"})
 """Effects whose cost has many local minima, since events jump with their parameters."""
+
+
+def is_rough(explanation: Explanation) -> bool:
+    """Whether the cost of an explanation has many local minima."""
+    return not ROUGH.isdisjoint(explanation.effects)
 
 
 def starts_of(data: EvidenceData, model: Model) -> dict[Variant, list[Start]]:

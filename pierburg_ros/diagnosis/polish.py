@@ -71,12 +71,8 @@ def _landings(search: Search, fit: Fit) -> list[dict[str, float]]:
 
 def _measured(search: Search, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
     """The cost where each of the `moves` leads, and the values there."""
-    measured = []
-    for move in moves:
-        values = _values(search, fit, move)
-        residual = search.residual(*search.models(fit.explanation, values))
-        measured.append((float(residual @ residual), values))
-    return measured
+    places = [_values(search, fit, move) for move in moves]
+    return [(search.chi2_at(fit.explanation, values), values) for values in places]
 
 
 def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:

@@ -75,6 +75,11 @@ class Search:
         """Training residual of `model` in units of the noise; large where it cannot be simulated."""
         return self._finite(model, switch)[self._training]
 
+    def chi2_at(self, explanation: Explanation, values: Mapping[str, float]) -> float:
+        """Chi2 of an explanation with given values on the training samples."""
+        residual = self.residual(*self.models(explanation, values))
+        return float(residual @ residual)
+
     def choosing_chi2(self, fit: Fit) -> float:
         """Chi2 of a fit on the samples that choose; 0 where there are none."""
         residual = self._finite(fit.model, fit.switch)[self.data.choosing]
@@ -198,9 +203,9 @@ class Search:
         best, moment = fit.chi2, fit.values[name]
         for shift in np.arange(-REDATED, REDATED + 0.1, 0.25):
             values = {**fit.values, name: fit.values[name] + shift}
-            residual = self.residual(*self.models(fit.explanation, self._within(fit.explanation, values)))
-            if residual @ residual < best:
-                best, moment = float(residual @ residual), values[name]
+            chi2 = self.chi2_at(fit.explanation, self._within(fit.explanation, values))
+            if chi2 < best:
+                best, moment = chi2, values[name]
         return self.fit(fit.explanation, {**fit.values, name: moment})
 
     def _within(self, explanation: Explanation, values: Mapping[str, float]) -> dict[str, float]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.hypotheses import ROUGH
+from pierburg_ros.diagnosis.hypotheses import is_rough
 from pierburg_ros.diagnosis.search import Fit, Search, spread
 
 Signal = NDArray[np.float64]
@@ -55,7 +55,7 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * rise
     weak = np.diag(normal) <= 1e-12 * max(float(np.max(np.diag(normal), initial=0.0)), 1e-300)
     reach = SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    rough = bool(ROUGH.intersection(fit.explanation.effects))
+    rough = is_rough(fit.explanation)
     limit = fit.chi2 + (DENTED if rough else SURE**2) * rise
     places = range(len(fit.explanation.names))
     coordinates = search.coordinates(fit.explanation)
@@ -72,7 +72,7 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
         low, high = (pick(values[name] for values in allowed) for pick in (min, max))
         value = fit.values[name]
         known = max(high - value, value - low) <= HALF_KNOWN * abs(value)
-        result[name] = Estimate(value, low, high, bool(known))
+        result[name] = Estimate(value, low, high, known)
     return result
 
 
@@ -87,8 +87,7 @@ def _plateau(search: Search, fit: Fit, place: int, side: float, limit: float) ->
     while reach < upper - lower:
         point = fit.solution.point.copy()
         point[place] = np.clip(point[place] + side * reach, lower, upper)
-        residual = search.residual(*search.models(fit.explanation, coordinates.values(point)))
-        if float(residual @ residual) > limit:
+        if search.chi2_at(fit.explanation, coordinates.values(point)) > limit:
             break
         reach *= 2.0
     return reach
