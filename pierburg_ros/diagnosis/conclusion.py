@@ -25,7 +25,7 @@ from pierburg_ros.plant import Model
 Signal = NDArray[np.float64]
 
 EXPLAINED = 1.10
-"""Error over noise, on training samples, from which structure is left that no tried explanation removes."""
+"""Training error over its white part from which structure is left that no tried explanation removes."""
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
 
@@ -62,7 +62,7 @@ def conclude(exploration: Exploration) -> Conclusion:
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)
-    final, known = settled(exploration, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
+    final, known = settled(exploration, chosen) if chosen.excess <= EXPLAINED else (chosen, {})
     if step := coarse_step(exploration.data):
         chosen, final = rounded(chosen, step), rounded(final, step)
         exploration.fits[chosen.explanation] = chosen
@@ -119,7 +119,7 @@ def _confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> floa
 
 def verdict_on(chosen: Fit) -> Verdict:
     """The verdict that a chosen explanation stands for."""
-    if chosen.ratio > EXPLAINED:
+    if chosen.excess > EXPLAINED:
         return "unexplained"
     if chosen.explanation.variants:
         return "missing_physics"
