@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
-from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
+from pierburg_ros.diagnosis.uncertainty import Estimate, centred, estimates
 from pierburg_ros.diagnosis.wording import by_evidence, by_grid
 from pierburg_ros.plant import Model
 
@@ -88,6 +88,7 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
     if is_rough(fit.explanation):
         exploration.progress(f"{label(fit.explanation)}, last values")
         fit = polished(search, fit)
+    fit = centred(search, fit)
     return fit, estimates(search, fit)
 
 

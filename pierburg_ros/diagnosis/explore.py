@@ -28,7 +28,7 @@ ADEQUATE = 1.03
 """Training error over its white part up to which an explanation accounts for all there is."""
 COMPLETE = 1.01
 """Training error over its white part at which the search for explanations of one size ends."""
-NEAR = 5.0
+NEAR = 8.0
 """Training error over its white part up to which an explanation may only have stopped too early."""
 RIVALS = 3
 """Explanations of one size that are grown while none is adequate, besides every single drift."""

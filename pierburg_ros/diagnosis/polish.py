@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,8 @@ HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
 LEAPS = (-1.0, -0.5, 0.5, 1.0)
 """Logarithms of the factors by which the first round moves parameters that are searched by theirs."""
+TEETH = "cogging_torque.periods_per_motor_revolution"
+"""A whole number by the build of a motor; a descent may stop on a side lobe between two of them."""
 FINEST, COARSEST = 1e-2, 10.0
 """Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
@@ -51,10 +55,16 @@ def polished(search: Search, fit: Fit) -> Fit:
 
 
 def _leaps(search: Search, fit: Fit) -> list[dict[str, float]]:
-    """The values of `fit`, and those after a leap of each parameter that is searched by its logarithm."""
+    """The values of `fit`; those after a leap of each parameter that is searched by its logarithm; those with as many
+    teeth as a motor can have."""
     units = zip(fit.explanation.names, np.eye(len(fit.explanation.names)), strict=True)
     moves = [leap * unit for name, unit in units if name in LOGARITHMIC for leap in LEAPS]
-    return [fit.values, *(_values(search, fit, move) for move in moves)]
+    whole = [
+        {**fit.values, TEETH: float(round(fit.values[TEETH])), "cogging_torque.phase": quarter * math.pi / 2}
+        for quarter in range(4)
+        if TEETH in fit.explanation.names
+    ]
+    return [fit.values, *(_values(search, fit, move) for move in moves), *whole]
 
 
 def _measured(search: Search, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
