@@ -58,7 +58,7 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     normal = jacobian.T @ jacobian
     rise = spread(fit)
     covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * rise
-    weak = _without_slope(fit)
+    weak = _moments(fit) | _without_slope(fit)
     reach = SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     rough = is_rough(fit.explanation)
     limit = _limit(fit)
@@ -82,12 +82,12 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
 
 
 def centred(search: Search, fit: Fit) -> Fit:
-    """`fit` with each quantity that has no slope in the middle of where it makes no difference.
+    """`fit` with each moment in the middle of where it makes no difference.
 
-    A load may begin, and a parameter change, at any moment while the shaft stands still.
+    A load may begin, and a parameter change, at any time while the shaft stands still.
     """
     point = fit.solution.point.copy()
-    for place in np.flatnonzero(_without_slope(fit)):
+    for place in np.flatnonzero(_moments(fit)):
         below, above = (_plateau(search, fit, int(place), side, _limit(fit)) for side in (-1.0, 1.0))
         point[place] += 0.5 * (above - below)
     if np.array_equal(point, fit.solution.point):
@@ -100,11 +100,15 @@ def _limit(fit: Fit) -> float:
     return fit.chi2 + (DENTED if is_rough(fit.explanation) else SURE**2) * spread(fit)
 
 
+def _moments(fit: Fit) -> NDArray[np.bool_]:
+    """Which quantities are times, shape (quantities,): they may have no slope to one side only."""
+    return np.array([name in MOMENTS or name.endswith(WHEN) for name in fit.explanation.names], dtype=np.bool_)
+
+
 def _without_slope(fit: Fit) -> NDArray[np.bool_]:
-    """Which quantities may leave chi2 as it is when they move to one side, shape (quantities,): moments may."""
+    """Which quantities leave chi2 as it is when they move a little, shape (quantities,)."""
     slope = np.sum(fit.solution.jacobian**2, axis=0)
-    flat = slope <= 1e-12 * max(float(np.max(slope, initial=0.0)), 1e-300)
-    return np.asarray(flat | [name in MOMENTS or name.endswith(WHEN) for name in fit.explanation.names])
+    return np.asarray(slope <= 1e-12 * max(float(np.max(slope, initial=0.0)), 1e-300))
 
 
 def _plateau(search: Search, fit: Fit, place: int, side: float, limit: float) -> float:
