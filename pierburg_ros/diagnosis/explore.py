@@ -26,7 +26,7 @@ Growth = str | tuple[Variant, list[Start]]
 
 ADEQUATE = 1.03
 """Training error over its white part up to which an explanation accounts for all there is."""
-COMPLETE = 1.01
+COMPLETE = 1.02
 """Training error over its white part at which the search for explanations of one size ends."""
 NEAR = 8.0
 """Training error over its white part up to which an explanation may only have stopped too early."""
