@@ -14,7 +14,7 @@ voltage, the most that going from steps of 10 us to 5 changes for any effect in 
 WHITE = 1.5
 """Repetition of a residual up to which it passes for white noise."""
 UNCERTAIN = 1.02
-"""Training error over its white part that white noise may show: of 10,000 to 20,000 samples it scatters by 0.7 to 1 %."""
+"""Training error over its white part that white noise may show: with 10,000 to 20,000 samples it scatters by 1 %."""
 
 
 def gain(smaller: Fit, larger: Fit) -> float:
