@@ -18,7 +18,7 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
 LEAPS = (-1.0, -0.5, 0.5, 1.0)
-"""Logarithms of the factors by which the first round moves parameters that are searched by theirs."""
+"""Logarithms of the factors by which parameters leap that are searched by theirs."""
 TEETH = "cogging_torque.periods_per_motor_revolution"
 """A whole number by the build of a motor; a descent may stop on a side lobe between two of them."""
 FINEST, COARSEST = 1e-2, 10.0
@@ -35,16 +35,16 @@ def polished(search: Search, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
     One descent starts at the lowest of many points, others far along the weakest axis: the cost's valley bends, so that
-    no point on a straight line shows how low it runs there. The first round goes through stretches of the recordings,
-    from `fit` and from where leaps of one parameter land. Rounds take fine and coarse differences for the Jacobian in
-    turn; the search ends when neither helps.
+    no point on a straight line shows how low it runs there. As long as rounds help, they go through stretches of the
+    recordings too, from `fit` and from where leaps of one parameter land. Rounds take fine and coarse differences for
+    the Jacobian in turn; the search ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
-        if number == 0:
+        if idle == 0:
             descents += [unstuck(search, fit.explanation, start, BRIEF) for start in _leaps(search, fit)]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
