@@ -18,14 +18,14 @@ from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
-from pierburg_ros.diagnosis.uncertainty import Estimate, centred, estimates
+from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
 from pierburg_ros.diagnosis.wording import by_evidence, by_grid
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
 
 EXPLAINED = 1.10
-"""Training error over its white part from which structure is left that no tried explanation removes."""
+"""Error over noise, on training samples, from which structure is left that no tried explanation removes."""
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
 
@@ -62,7 +62,7 @@ def conclude(exploration: Exploration) -> Conclusion:
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)
-    final, known = settled(exploration, chosen) if chosen.excess <= EXPLAINED else (chosen, {})
+    final, known = settled(exploration, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
     if step := coarse_step(exploration.data):
         chosen, final = rounded(chosen, step), rounded(final, step)
         exploration.fits[chosen.explanation] = chosen
@@ -88,7 +88,6 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
     if is_rough(fit.explanation):
         exploration.progress(f"{label(fit.explanation)}, last values")
         fit = polished(search, fit)
-    fit = centred(search, fit)
     return fit, estimates(search, fit)
 
 
@@ -120,7 +119,7 @@ def _confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> floa
 
 def verdict_on(chosen: Fit) -> Verdict:
     """The verdict that a chosen explanation stands for."""
-    if chosen.excess > EXPLAINED:
+    if chosen.ratio > EXPLAINED:
         return "unexplained"
     if chosen.explanation.variants:
         return "missing_physics"

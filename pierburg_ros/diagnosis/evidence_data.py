@@ -13,7 +13,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.identification.resimulation import Start, inputs_of
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.recording import Recording
-from pierburg_ros.recording.noise import noise_of, rounding_of
+from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
 
@@ -77,15 +77,11 @@ class Run:
 
 @dataclass(frozen=True)
 class EvidenceData:
-    """All recordings of one actuator; `noise` and `rounding` are standard deviations of the samples, measured unit.
-
-    The rounding to the converter's steps is part of the noise.
-    """
+    """All recordings of one actuator; `noise` is the standard deviation of the sensor noise, measured unit."""
 
     actuator: Actuator
     runs: tuple[Run, ...]
     noise: float
-    rounding: float
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Measured minus simulated over all runs, shape (samples,), in units of the noise."""
@@ -142,7 +138,7 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
         parts = training_blocks(time), choosing_blocks(time)
         runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, *parts))
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
-    return EvidenceData(actuator, tuple(runs), noise, min(rounding_of(run.measured) for run in runs))
+    return EvidenceData(actuator, tuple(runs), noise)
 
 
 def rms(values: Signal) -> float:

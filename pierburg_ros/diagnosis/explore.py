@@ -11,10 +11,9 @@ from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
-from pierburg_ros.diagnosis.hypotheses import ROUGH, TIMED, Start, is_rough, starts_of
+from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, is_rough, starts_of
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
-from pierburg_ros.diagnosis.shooting import unstuck
 from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, betters
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
@@ -25,11 +24,11 @@ Growth = str | tuple[Variant, list[Start]]
 """What an explanation grows by: a parameter (drifted or changed), or an effect with its starting values."""
 
 ADEQUATE = 1.03
-"""Training error over its white part up to which an explanation accounts for all there is."""
-COMPLETE = 1.02
-"""Training error over its white part at which the search for explanations of one size ends."""
-NEAR = 8.0
-"""Training error over its white part up to which an explanation may only have stopped too early."""
+"""Training error over noise up to which an explanation accounts for all there is."""
+COMPLETE = 1.01
+"""Training error over noise at which the search for explanations of one size ends."""
+NEAR = 5.0
+"""Training error over noise up to which the best explanation may only have stopped too early."""
 RIVALS = 3
 """Explanations of one size that are grown while none is adequate, besides every single drift."""
 GLANCE = 24.0
@@ -60,11 +59,10 @@ SHARPENED = 2
 """How many of the best whole fits with a rough cost are looked over again in each round."""
 COMPARABLE = 1.5
 """Training error over that of the best explanation of its size up to which a fit is looked over again."""
-OUTSTANDING = 0.5
-"""Training error over that of the best explanation without its effects up to which a fit is looked over at once, though
-it does not come near the noise."""
 FADING = (0.75, 0.5, 0.25, 0.0)
 """Shares of an effect's strength at which what may stand for it is fitted in turn."""
+TIMED = frozenset({"external_load", "thermal_resistance"})
+"""Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
 """Explanations of more quantities than this are not tried."""
 
@@ -128,10 +126,8 @@ class Exploration:
                 for seed in self._promising(best):
                     self.grow(seed)
                     grown = self._sharpened(seed.size + 1)
-                    if best.excess > ADEQUATE and grown is not None and grown.excess <= COMPLETE:
+                    if best.ratio > ADEQUATE and grown is not None and grown.ratio <= COMPLETE:
                         break
-                else:
-                    self._sharpen_best(best.explanation.size + 1)
                 better = self._pruned()
                 if better.explanation.size <= best.explanation.size:
                     best = better
@@ -221,7 +217,7 @@ class Exploration:
     def _sharpened(self, size: int) -> Fit | None:
         """The best explanation of `size`, looked over again where it comes near the noise and does not reach it."""
         best = self.best_of_size(size)
-        if best is None or not best.explanation.variants or not ADEQUATE < best.excess < NEAR:
+        if best is None or not best.explanation.variants or not ADEQUATE < best.ratio < NEAR:
             return best
         self._sharpen(best)
         return self.best_of_size(size)
@@ -232,7 +228,7 @@ class Exploration:
         Single drifts come first: an effect beside a drift is more frequent than two effects, and found sooner.
         """
         size = best.explanation.size
-        if best.excess <= ADEQUATE:
+        if best.ratio <= ADEQUATE:
             return [best.explanation]
         rivals = [fit for fit in self.fits.values() if fit.explanation.size == size]
         steady = [fit.chi2 for fit in rivals if fit.explanation.changed is None]
@@ -254,7 +250,7 @@ class Exploration:
             tastes = [taste for tasted in pool.map(self._taste, prospects) for taste in tasted]
             looks = list(pool.map(self._look, self._hopeful(tastes, seed.size + 1)))
             finished = list(pool.map(self._finish, self._worth_finishing(bases, _best_of_each(looks))))
-            if bases[self.search].excess > ADEQUATE:
+            if bases[self.search].ratio > ADEQUATE:
                 list(pool.map(self._sharpen, self._worth_sharpening(finished, seed.size + 1)))
 
     def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:
@@ -286,9 +282,9 @@ class Exploration:
         base = bases[search]
         promised = search.screened(base, variant, tried)[:STARTS_TRIED]
         known = self.best_of_size(explanation.size)
-        if base.excess <= ADEQUATE:
+        if base.ratio <= ADEQUATE:
             promised = [pair for pair in promised if base.chi2 - pair[0] > PROMISING]
-        elif known is not None and known.excess <= ADEQUATE:
+        elif known is not None and known.ratio <= ADEQUATE:
             promised = [pair for pair in promised if pair[0] < REPLACING**2 * base.chi2]
         starts = [{**base.values, **start} for _, start in promised]
         return Prospect(explanation, growth, search, tuple(starts))
@@ -305,29 +301,29 @@ class Exploration:
         best = dict.fromkeys((self.search, self.glance), known.ratio if known else np.inf)
         for taste in tastes:
             best[taste.prospect.search] = min(best[taste.prospect.search], taste.fit.ratio)
-        accounted = any(
-            fit.excess <= ADEQUATE for fit in (*(taste.fit for taste in tastes), *([known] if known else []))
-        )
 
         def hopeful(taste: Look) -> bool:
-            spared = taste.prospect.drifts or (taste.prospect.rough and not accounted)
-            return spared or taste.fit.ratio < HOPELESS * max(best[taste.prospect.search], 1.0)
+            leading = best[taste.prospect.search]
+            spared = taste.prospect.drifts or (taste.prospect.rough and leading > ADEQUATE)
+            return spared or taste.fit.ratio < HOPELESS * max(leading, 1.0)
 
         return [taste for taste in tastes if hopeful(taste)]
 
     def _look(self, taste: Look) -> Look:
-        """A brief fit that goes on from a taste; where the cost is rough, one from the start by another way."""
-        prospect, search = taste.prospect, taste.prospect.search
+        """A brief fit that goes on from a taste; where the cost is rough, also one that forgives large errors."""
+        prospect = taste.prospect
         self.progress(label(prospect.explanation))
-        if prospect.rough and taste.fit.excess > ADEQUATE:
-            fit = unstuck(search, prospect.explanation, taste.start, BRIEF)
-        else:
-            fit = search.fit(prospect.explanation, taste.fit.values, BRIEF - TASTE)
-        return Look(prospect, taste.start, search.dated(fit) if prospect.changes else fit)
+        search, explanation = prospect.search, prospect.explanation
+        fits = [search.fit(explanation, taste.fit.values, BRIEF - TASTE)]
+        if prospect.rough and fits[0].ratio > ADEQUATE:
+            forgiving = search.fit(explanation, taste.start, BRIEF, forgiving=True)
+            fits.append(search.fit(explanation, forgiving.values, BRIEF))
+        best = min(fits, key=lambda fit: fit.ratio)
+        return Look(prospect, taste.start, search.dated(best) if prospect.changes else best)
 
     def _worth_finishing(self, bases: dict[Search, Fit], looks: list[Look]) -> list[Fit]:
         """Looks that deserve a whole fit: the best; on an adequate base only what gains noticeably."""
-        if bases[self.search].excess <= ADEQUATE:
+        if bases[self.search].ratio <= ADEQUATE:
             return [look.fit for look in looks if bases[look.prospect.search].chi2 - look.fit.chi2 > PROMISING]
         fits = sorted((look.fit for look in looks), key=lambda fit: fit.ratio)
         near = 1.3 * fits[0].ratio if fits else 0.0
@@ -336,30 +332,10 @@ class Exploration:
         ]
 
     def _worth_sharpening(self, finished: list[Fit], size: int) -> list[Fit]:
-        """Whole fits with a rough cost near the best of their `size` that come near the noise too, or stand out."""
-        promising = [fit for fit in finished if fit.excess < NEAR or self._stands_out(fit)]
-        return self._best_rough(promising, size)
-
-    def _best_rough(self, fits: Iterable[Fit], size: int) -> list[Fit]:
-        """The best of some fits with a rough cost that come near the best of their `size`."""
+        """Whole fits with a rough cost that come near the best of their `size`."""
         best = self.best_of_size(size)
-        rough = [fit for fit in fits if best is not None and _deserves_sharpening(fit, best)]
+        rough = [fit for fit in finished if best is not None and _deserves_sharpening(fit, best)]
         return sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]
-
-    def _stands_out(self, fit: Fit) -> bool:
-        """Whether a fit leaves much less than every explanation of its size that has none of its effects."""
-        effects = set(fit.explanation.effects)
-        others = [
-            other.ratio for other in self.of_size(fit.explanation.size) if effects.isdisjoint(other.explanation.effects)
-        ]
-        return fit.ratio < OUTSTANDING * min(others, default=np.inf)
-
-    def _sharpen_best(self, size: int) -> None:
-        """Look the best fits of a size over again, however far from the noise, where nothing accounts for all."""
-        best = self.best_of_size(size)
-        if best is not None and best.excess > ADEQUATE:
-            for fit in self._best_rough(self.of_size(size), size):
-                self._sharpen(fit)
 
     def _finish(self, look: Fit) -> Fit:
         self.progress(label(look.explanation))

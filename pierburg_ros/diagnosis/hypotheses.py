@@ -66,14 +66,8 @@ TURNS = (0.9, 16.0)
 """Range in which periods of cogging per motor revolution are looked for."""
 FREQUENCIES = (0.1, 20.0)
 """Range in which the rhythm of a load is looked for [Hz]."""
-ROUGH = frozenset(
-    {"static_friction", "backlash", "position_dependent_friction", "cogging_torque", "external_load", "input_delay"}
-)
+ROUGH = frozenset({"static_friction", "backlash", "position_dependent_friction", "external_load", "input_delay"})
 """Effects whose cost has many local minima, since events jump with their parameters."""
-
-
-TIMED = frozenset({"external_load", "thermal_resistance"})
-"""Effects that go by the clock or remember for minutes: they may show late, and cannot start afresh in between."""
 
 
 def is_rough(explanation: Explanation) -> bool:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.explanation import LOGARITHMIC
 from pierburg_ros.diagnosis.search import Fit, Search, repetition, spread
-from pierburg_ros.diagnosis.shooting import unstuck
 
 Signal = NDArray[np.float64]
 
@@ -17,16 +14,12 @@ REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
 HOPS = (-16.0, 16.0)
 """Where along the weakest axis further descents start, in standard deviations."""
-LEAPS = (-1.0, -0.5, 0.5, 1.0)
-"""Logarithms of the factors by which parameters leap that are searched by theirs."""
-SCANNED = {(-0.1, -0.05, 0.05, 0.1): 1, (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0): 3}
-"""The same for leaps beside which others are scanned, near and far, and from how many of the best points so found
-descents start."""
+LEAPS = {(-0.1, -0.05, 0.05, 0.1): 1, (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0): 3}
+"""Logarithms of the factors by which the first round moves parameters that are searched by theirs, near and far, and
+from how many of the best points so found descents start."""
 _SHARES = np.concatenate([np.geomspace(0.002, 0.02, 8), np.linspace(0.04, 0.5, 24)])
 SCAN = np.concatenate([-_SHARES, _SHARES])
 """Shares by which each other parameter of the same effect is then moved: the valley bends, and runs beside a cliff."""
-TEETH = "cogging_torque.periods_per_motor_revolution"
-"""A whole number by the build of a motor; a descent may stop on a side lobe between two of them."""
 FINEST, COARSEST = 1e-2, 10.0
 """Least and largest difference for a Jacobian, as a share of the usual one."""
 BRIEF = 8
@@ -40,22 +33,17 @@ WIDEST = 0.25
 def polished(search: Search, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
-    One descent starts at the lowest of many points, others far along the weakest axis: the cost's valley bends, so that
-    no point on a straight line shows how low it runs there. The first round also descends from where leaps of one
-    parameter land, with scans of those beside it: a few jumps of the shaft leave little else to go by. As long as
-    rounds help, they go through stretches of the recordings too, from `fit` and from leaps. Rounds take fine and
-    coarse differences for the Jacobian in turn; the search ends when neither helps.
+    One descent starts at the lowest of many points. Others start far along the weakest axis, and once where leaps along
+    logarithmic parameters land: the cost's valley bends, so that no point on a straight line shows how low it runs
+    there. Rounds take fine and coarse differences
+    for the Jacobian in turn; the search ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
         axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
         starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
+        starts += _landings(search, fit) if number == 0 else []
         descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
-        if number == 0:
-            landings = _landings(search, fit)
-            descents += [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in landings]
-        if idle == 0:
-            descents += [unstuck(search, fit.explanation, start, BRIEF) for start in _leaps(search, fit)]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
         fit = again if again.chi2 <= fit.chi2 else fit
@@ -64,24 +52,11 @@ def polished(search: Search, fit: Fit) -> Fit:
     return fit
 
 
-def _leaps(search: Search, fit: Fit) -> list[dict[str, float]]:
-    """The values of `fit`; those after a leap of each parameter that is searched by its logarithm; those with as many
-    teeth as a motor can have."""
-    units = zip(fit.explanation.names, np.eye(len(fit.explanation.names)), strict=True)
-    moves = [leap * unit for name, unit in units if name in LOGARITHMIC for leap in LEAPS]
-    whole = [
-        {**fit.values, TEETH: float(round(fit.values[TEETH])), "cogging_torque.phase": quarter * math.pi / 2}
-        for quarter in range(4)
-        if TEETH in fit.explanation.names
-    ]
-    return [fit.values, *(_values(search, fit, move) for move in moves), *whole]
-
-
 def _landings(search: Search, fit: Fit) -> list[dict[str, float]]:
     """Where to descend from after a leap of one parameter: the lowest points among scans of those beside it."""
     names, landings = fit.explanation.names, []
     units = np.eye(len(names))
-    for leaps, most in SCANNED.items():
+    for leaps, most in LEAPS.items():
         found = []
         for name, unit in zip(names, units, strict=True):
             effect = name.split(".")[0]

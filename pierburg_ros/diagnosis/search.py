@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, rms
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
 from pierburg_ros.diagnosis.explanation import AFTER, WHEN, Coordinates, Explanation, Variant
 from pierburg_ros.diagnosis.least_squares import Solution, minimise
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
-from pierburg_ros.recording.noise import white_part
 
 Signal = NDArray[np.float64]
 Start = Mapping[str, float]
@@ -24,18 +23,13 @@ REDATED = 4.0
 
 @dataclass(frozen=True)
 class Fit:
-    """An explanation with its best values by dotted name, the model with them, and the one that takes over if any.
-
-    `excess` is the training error over the white part of what is left: 1 where that is white noise. The noise itself is
-    estimated before the motion is known, which in a closed loop is not smooth: up to a tenth too low or too high.
-    """
+    """An explanation with its best values by dotted name, the model with them, and the one that takes over if any."""
 
     explanation: Explanation
     values: dict[str, float]
     model: Model
     switch: Switch | None
     solution: Solution
-    excess: float
 
     @property
     def chi2(self) -> float:
@@ -125,11 +119,7 @@ class Search:
         solution = minimise(cost, begin, lower, upper, steps, iterations)
         values = coordinates.values(solution.point)
         model, switch = self.models(explanation, values)
-        return Fit(explanation, {**model.values, **values}, model, switch, solution, self._excess(solution.residual))
-
-    def _excess(self, residual: Signal) -> float:
-        white = max(white_part(residual), self.data.rounding / self.data.noise)
-        return rms(residual) / white if white > 0.0 else 1.0
+        return Fit(explanation, {**model.values, **values}, model, switch, solution)
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which an explanation is searched."""

@@ -12,9 +12,7 @@ FORMULATION = 1.15e-4
 voltage, the most that going from steps of 10 us to 5 changes for any effect in the textbook form (`docs/proof.md`)."""
 
 WHITE = 1.5
-"""Repetition of a residual up to which it passes for white noise."""
-UNCERTAIN = 1.02
-"""Training error over its white part that white noise may show: with 10,000 to 20,000 samples it scatters by 1 %."""
+"""Repetition of a residual up to which it passes for white noise: its estimated size is uncertain by some percent."""
 
 
 def gain(smaller: Fit, larger: Fit) -> float:
@@ -30,8 +28,8 @@ def betters(larger: Fit, smaller: Fit, data: EvidenceData) -> bool:
 
 def accounts_for_all(fit: Fit, data: EvidenceData) -> bool:
     """Whether an explanation with an effect leaves white noise, and beyond it no more than simulators may differ by."""
-    allowed = UNCERTAIN**2 + allowance(fit, data) / fit.solution.residual.size
-    return bool(fit.explanation.variants) and fit.excess**2 < allowed and repetition(fit) < WHITE
+    small = bool(fit.explanation.variants) and fit.chi2 < fit.solution.residual.size + allowance(fit, data)
+    return small and repetition(fit) < WHITE
 
 
 def allowance(fit: Fit, data: EvidenceData) -> float:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.explanation import WHEN
 from pierburg_ros.diagnosis.hypotheses import is_rough
 from pierburg_ros.diagnosis.search import Fit, Search, spread
 
@@ -23,12 +22,8 @@ DENTED = 12.0
 """Rise of chi2 allowed where the cost is rough: the best of many dents is lower than the true one by luck."""
 PATIENCE = 3
 """How many reaches without success end the search where the cost is rough: a fit may have ended in a dent."""
-MOMENTS = frozenset({"external_load.start", "external_load.end"})
-"""Effects' quantities that are times; those of changes are moments too."""
 FIRST = 1e-5
 """Share of its range by which a quantity without a slope is moved first."""
-HALVINGS = 8
-"""How often the end of its range is then halved in on."""
 BRIEF = 4
 """Iterations in which the other quantities are fitted again."""
 HALF_KNOWN = 0.5
@@ -58,10 +53,10 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     normal = jacobian.T @ jacobian
     rise = spread(fit)
     covariance = np.linalg.pinv(normal, rcond=1e-13, hermitian=True) * rise
-    weak = _moments(fit) | _without_slope(fit)
+    weak = np.diag(normal) <= 1e-12 * max(float(np.max(np.diag(normal), initial=0.0)), 1e-300)
     reach = SURE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     rough = is_rough(fit.explanation)
-    limit = _limit(fit)
+    limit = fit.chi2 + (DENTED if rough else SURE**2) * rise
     places = range(len(fit.explanation.names))
     coordinates = search.coordinates(fit.explanation)
     sides = [
@@ -81,54 +76,21 @@ def estimates(search: Search, fit: Fit) -> dict[str, Estimate]:
     return result
 
 
-def centred(search: Search, fit: Fit) -> Fit:
-    """`fit` with each moment in the middle of where it makes no difference.
-
-    A load may begin, and a parameter change, at any time while the shaft stands still.
-    """
-    point = fit.solution.point.copy()
-    for place in np.flatnonzero(_moments(fit)):
-        below, above = (_plateau(search, fit, int(place), side, _limit(fit)) for side in (-1.0, 1.0))
-        point[place] += 0.5 * (above - below)
-    if np.array_equal(point, fit.solution.point):
-        return fit
-    return search.fit(fit.explanation, search.coordinates(fit.explanation).values(point), 0)
-
-
-def _limit(fit: Fit) -> float:
-    """Chi2 up to which 95 % of what chance may do reaches."""
-    return fit.chi2 + (DENTED if is_rough(fit.explanation) else SURE**2) * spread(fit)
-
-
-def _moments(fit: Fit) -> NDArray[np.bool_]:
-    """Which quantities are times, shape (quantities,): they may have no slope to one side only."""
-    return np.array([name in MOMENTS or name.endswith(WHEN) for name in fit.explanation.names], dtype=np.bool_)
-
-
-def _without_slope(fit: Fit) -> NDArray[np.bool_]:
-    """Which quantities leave chi2 as it is when they move a little, shape (quantities,)."""
-    slope = np.sum(fit.solution.jacobian**2, axis=0)
-    return np.asarray(slope <= 1e-12 * max(float(np.max(slope, initial=0.0)), 1e-300))
-
-
 def _plateau(search: Search, fit: Fit, place: int, side: float, limit: float) -> float:
-    """How far a quantity without a slope moves alone until chi2 passes the `limit`, at most to its bound."""
+    """How far a quantity without a slope moves alone until chi2 passes the `limit`, to a factor of two.
+
+    At most to its bound. A load may begin at any moment while the shaft stands still.
+    """
     coordinates = search.coordinates(fit.explanation)
-    bounds = coordinates.bounds()
-    room = abs(float(bounds[int(side > 0.0)][place]) - float(fit.solution.point[place]))
-
-    def within(reach: float) -> bool:
+    lower, upper = (float(bound[place]) for bound in coordinates.bounds())
+    reach = FIRST * (upper - lower)
+    while reach < upper - lower:
         point = fit.solution.point.copy()
-        point[place] += side * reach
-        return search.chi2_at(fit.explanation, coordinates.values(point)) <= limit
-
-    inside, outside = 0.0, min(FIRST * float(bounds[1][place] - bounds[0][place]), room)
-    while outside < room and within(outside):
-        inside, outside = outside, min(2.0 * outside, room)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (inside + outside)
-        inside, outside = (middle, outside) if within(middle) else (inside, middle)
-    return inside
+        point[place] = np.clip(point[place] + side * reach, lower, upper)
+        if search.chi2_at(fit.explanation, coordinates.values(point)) > limit:
+            break
+        reach *= 2.0
+    return reach
 
 
 def _ends(search: Search, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from recordings import NOMINAL, PIERBURG, recording, recording_under
 
-from pierburg_ros.diagnosis.conclusion import Conclusion, conclude, settled
+from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
 from pierburg_ros.diagnosis.evidence_data import choosing_blocks, evidence_of
-from pierburg_ros.diagnosis.explanation import WHEN, Explanation, Variant
+from pierburg_ros.diagnosis.explanation import WHEN, Explanation
 from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.identification.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
@@ -68,24 +68,6 @@ def test_a_change_in_the_middle_is_dated() -> None:
     assert found.verdict == "parameter_drift"
     assert found.chosen.explanation.changed == "armature_resistance"
     assert found.chosen.values["armature_resistance" + WHEN] == pytest.approx(13.4, abs=0.3)
-
-
-def test_a_load_that_begins_in_a_standstill_is_put_in_the_middle_of_it() -> None:
-    """The shaft is back on the closed stop at 6.2 s and rests there up to 8 s: the load is too small to lift it."""
-    time = np.arange(0.0, 24.0, 0.002)
-    random = np.random.default_rng(5)
-    duty = random.uniform(0.2, 0.36, 41)[(time / 0.6).astype(int)]
-    duty[(time > 4.8) & (time < 8.0)] = 0.0
-    load = {"external_load.torque": 0.04, "external_load.start": 7.9, "external_load.end": 15.0}
-    data = evidence_of([recording_under(duty, time, load, random)], PIERBURG)
-    exploration = Exploration(data, NOMINAL)
-    variant = Variant("external_load", ("torque", "start", "end"))
-    chosen = exploration.add(Explanation((), (variant,)), {**load, "external_load.start": 5.5})
-    final, known = settled(exploration, chosen)
-    start = known["external_load.start"]
-    assert final.values["external_load.start"] == pytest.approx(0.5 * (start.low + start.high), abs=0.3)
-    assert start.low == pytest.approx(6.21, abs=0.1)
-    assert start.high == pytest.approx(8.0, abs=0.05)
 
 
 def test_of_explanations_that_fit_alike_one_that_fails_on_the_choosing_samples_is_out() -> None:
