@@ -16,8 +16,8 @@ from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.conclusion import Support
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, rms
-from pierburg_ros.diagnosis.explanation import Explanation, Variant, without
-from pierburg_ros.diagnosis.explore import BRIEF, Exploration, canonical, label
+from pierburg_ros.diagnosis.explanation import Explanation, Variant, canonical, without
+from pierburg_ros.diagnosis.explore import BRIEF, Exploration
 from pierburg_ros.diagnosis.hypotheses import Start, starts_of
 from pierburg_ros.diagnosis.search import Fit, Search
 from pierburg_ros.diagnosis.wording import by_recordings_left_out
@@ -63,7 +63,7 @@ def select(exploration: Exploration, start: Fit) -> Shared:
             looks = sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:LOOKED_AT]
             left_out = pool.map(_left_out, itertools.repeat(search), itertools.repeat(folds), looks)
             best, fit = min(zip(map(rms, left_out), looks, strict=True), key=lambda pair: pair[0])
-            exploration.progress(label(fit.explanation))
+            exploration.progress(fit.explanation.label)
             if best > WORTH * error:
                 break
             error, chosen = best, _settled(search, fit)

@@ -12,20 +12,19 @@ from scipy.linalg import qr
 from pierburg_ros.diagnosis.equivalence import Alternative, alternatives, explore_alternatives
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch, after_choice, rms
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
-from pierburg_ros.diagnosis.explore import Exploration, label
+from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.diagnosis.hypotheses import is_rough
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
+from pierburg_ros.diagnosis.significance import EXPLAINED
 from pierburg_ros.diagnosis.uncertainty import Estimate, estimates
 from pierburg_ros.diagnosis.wording import by_evidence, by_grid
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
 
-EXPLAINED = 1.10
-"""Error over noise, on training samples, from which structure is left that no tried explanation removes."""
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
 
@@ -86,7 +85,7 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
     search = Search(after_choice(exploration.data), exploration.nominal)
     fit = search.fit(chosen.explanation, chosen.values)
     if is_rough(fit.explanation):
-        exploration.progress(f"{label(fit.explanation)}, last values")
+        exploration.progress(f"{fit.explanation.label}, last values")
         fit = polished(search, fit)
     return fit, estimates(search, fit)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 
-from pierburg_ros.diagnosis.explanation import Explanation, Quantity, Variant, quantities, without
-from pierburg_ros.diagnosis.explore import TIED, Exploration, canonical
-from pierburg_ros.diagnosis.search import Fit, repetition
+from pierburg_ros.diagnosis.explanation import Explanation, Quantity, Variant, canonical, quantities, without
+from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.search import Fit
+from pierburg_ros.diagnosis.significance import alike, tied
 
 
 @dataclass(frozen=True)
@@ -20,10 +21,10 @@ class Alternative:
 
 def explore_alternatives(exploration: Exploration, best: Fit) -> None:
     """Try what else could stand for each quantity of `best`: any other one, for an effect any one or two parameters."""
-    limit = best.chi2 + TIED * repetition(best)
+    limit = alike(best)
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
-        exploration.grow(rest)
+        exploration.sharpen(exploration.grow(rest))
         if isinstance(quantity, Variant):
             free = [name for name in exploration.drifts if name not in rest.drifted and name != rest.changed]
             for others in (*itertools.combinations(free, 1), *itertools.combinations(free, 2)):
@@ -37,7 +38,7 @@ def alternatives(exploration: Exploration, best: Fit) -> list[Alternative]:
     """For each quantity of `best`, what may stand for it: one other quantity, or two parameters for an effect."""
     own = set(quantities(best.explanation))
     found = []
-    for fit in exploration.tied(best, exploration.fits.values()):
+    for fit in tied(best, exploration.fits.values(), exploration.search):
         other = set(quantities(fit.explanation))
         lacking, added = own - other, other - own
         if len(lacking) != 1 or len(added) > 2:

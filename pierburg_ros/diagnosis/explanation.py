@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,12 @@ class Explanation:
         return len(self.drifted) + len(self.variants) + (self.changed is not None)
 
     @property
+    def label(self) -> str:
+        """For people: what it changes."""
+        change = (f"change of {self.changed}",) if self.changed else ()
+        return " + ".join((*self.drifted, *change, *(variant.label for variant in self.variants))) or "nominal"
+
+    @property
     def effects(self) -> tuple[str, ...]:
         """Ids of the effects that act."""
         return tuple(variant.effect for variant in self.variants)
@@ -104,6 +110,19 @@ def without(explanation: Explanation, quantity: Quantity) -> Explanation:
         tuple(variant for variant in explanation.variants if variant != quantity),
         None if explanation.changed == quantity else explanation.changed,
     )
+
+
+def canonical(explanation: Explanation, order: Sequence[str]) -> Explanation | None:
+    """The same explanation with what may drift in this `order`; None where a quantity stands twice."""
+    drifted = tuple(name for name in order if name in explanation.drifted)
+    effects = explanation.effects
+    always = {name.split(".")[0] for name in order if "." in name}
+    if len(drifted) < len(explanation.drifted) or len(set(effects)) < len(effects) or always & set(effects):
+        return None
+    if explanation.changed in drifted:
+        return None
+    variants = tuple(sorted(explanation.variants, key=lambda variant: variant.effect))
+    return Explanation(drifted, variants, explanation.changed)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -11,48 +11,35 @@ from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
-from pierburg_ros.diagnosis.hypotheses import ROUGH, Start, is_rough, starts_of
+from pierburg_ros.diagnosis.hypotheses import Start, drifting, is_rough
 from pierburg_ros.diagnosis.polish import polished
-from pierburg_ros.diagnosis.search import Fit, Search, repetition
-from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, betters
+from pierburg_ros.diagnosis.prospects import PROMISING, Outlook, Prospect, most_promising
+from pierburg_ros.diagnosis.search import Fit, Search
+from pierburg_ros.diagnosis.significance import ADEQUATE, accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
-Growth = str | tuple[Variant, list[Start]]
-"""What an explanation grows by: a parameter (drifted or changed), or an effect with its starting values."""
 
-ADEQUATE = 1.03
-"""Training error over noise up to which an explanation accounts for all there is."""
-COMPLETE = 1.01
-"""Training error over noise at which the search for explanations of one size ends."""
 NEAR = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early."""
 RIVALS = 3
 """Explanations of one size that are grown while none is adequate, besides every single drift."""
 GLANCE = 24.0
 """How much of a recording [s] a first look takes in."""
-LATE = 0.5
-"""Excess of squared error in a first look, as a share of the whole, below which the look takes in everything."""
-PROMISING = 15.0
-"""Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up."""
-TIED = 12.0
-"""Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
-REFUTED = 1.1
-"""Error on the choosing samples, over the least of explanations that fit the training samples alike, from which one is
-out."""
 BRIEF, FULL = 6, 25
 """Iterations of a first look, and of a whole fit."""
 TASTE = 3
 """Iterations of a first look after which a hopeless one ends."""
 HOPELESS = 3.0
 """Error over that of the best explanation of the same size from which a first look is hopeless."""
-REPLACING = 0.5
-"""Share of the error of its base down to which a linear step must promise to come, where another explanation of the
-same size accounts for all."""
-STARTS_TRIED = 2
-"""Starts from which a first look is taken."""
+REPLACING = 8
+"""Explanations promising most on a seed that are looked at where another of the same size accounts for all."""
+TRIED_FIRST = 24
+"""Explanations promising most on any seed that are looked at before all seeds are grown in turn."""
+LOOKED_AT = 8
+"""How many of those are followed up by a brief fit."""
 FINISHED = 4
 """How many of the best first looks are always followed by a whole fit."""
 SHARPENED = 2
@@ -61,35 +48,8 @@ COMPARABLE = 1.5
 """Training error over that of the best explanation of its size up to which a fit is looked over again."""
 FADING = (0.75, 0.5, 0.25, 0.0)
 """Shares of an effect's strength at which what may stand for it is fitted in turn."""
-TIMED = frozenset({"external_load", "thermal_resistance"})
-"""Effects that may show late: a first look at them takes in the whole recording."""
 LARGEST = 3
 """Explanations of more quantities than this are not tried."""
-
-
-@dataclass(frozen=True)
-class Prospect:
-    """An explanation to look at, by what it is grown: on which samples, from which starts."""
-
-    explanation: Explanation
-    growth: Growth
-    search: Search
-    starts: tuple[Start, ...]
-
-    @property
-    def rough(self) -> bool:
-        """Whether the cost has many local minima."""
-        return not isinstance(self.growth, str) and self.growth[0].effect in ROUGH
-
-    @property
-    def drifts(self) -> bool:
-        """Whether it grows by a drift: cheap to look at, and perhaps what others grow on."""
-        return self.growth in self.explanation.drifted
-
-    @property
-    def changes(self) -> bool:
-        """Whether it grows by a change in the middle of the recording."""
-        return self.growth == self.explanation.changed
 
 
 @dataclass(frozen=True)
@@ -108,32 +68,52 @@ class Exploration:
         self.search = Search(data, nominal)
         self.glance = Search(data.cut(GLANCE), nominal)
         self.drifts = drifting(nominal)
+        self.outlook = Outlook(self.search, self.glance, self.drifts, progress)
         self.data = data
         self.nominal = nominal
         self.fits: dict[Explanation, Fit] = {}
         self._grown: set[Explanation] = set()
+        self._hasty: set[Explanation] = set()
         self._sharp: set[Explanation] = set()
         self.progress = progress
 
     def run(self) -> Fit:
         """Explore until the best explanation cannot be bettered by one more quantity; gives that best one."""
         with threadpool_limits(1):
-            best = self.add(Explanation())
+            self.add(Explanation())
             self.grow(Explanation())
-            self._sharpened(1)
-            best = self.preferred()
+            best = self.preferred(1)
             while best.explanation.size < LARGEST and not accounts_for_all(best, self.data):
-                for seed in self._promising(best):
-                    self.grow(seed)
-                    grown = self._sharpened(seed.size + 1)
-                    if best.ratio > ADEQUATE and grown is not None and grown.ratio <= COMPLETE:
-                        break
-                better = self._pruned()
-                if better.explanation.size <= best.explanation.size:
-                    best = better
+                size = best.explanation.size
+                if adequate(best):
+                    self.grow(best.explanation)
+                else:
+                    self._enlarge(size)
+                best = self._pruned()
+                if best.explanation.size <= size:
                     break
-                best = better
             return best
+
+    def _enlarge(self, size: int) -> None:
+        """Look for explanations with one quantity more than `size`, the cheap way first, until one leaves nothing."""
+        self._try_first(self._promising(self.preferred(size)))
+        if self._complete(size + 1):
+            return
+        self.sharpen(self.of_size(size))
+        best = self.preferred(size)
+        if accounts_for_all(best, self.data):
+            return
+        for seed in self._promising(best):
+            self.grow(seed)
+            if not self._complete(size + 1):
+                self.sharpen(self.of_size(size + 1))
+            if self._complete(size + 1):
+                return
+
+    def _complete(self, size: int) -> bool:
+        """Whether an explanation of a size leaves nothing to look for among its like."""
+        best = self.best_of_size(size)
+        return best is not None and complete(best)
 
     def add(self, explanation: Explanation, start: Start | None = None, iterations: int = FULL) -> Fit:
         """Fit an explanation and keep it if it is the best of its kind so far."""
@@ -167,27 +147,15 @@ class Exploration:
         fit = self.add(explanation, values)
         self.add(explanation, fit.values)
 
-    def preferred(self) -> Fit:
-        """The smallest explanation that no larger one betters significantly; of equals, the one with least effects."""
+    def preferred(self, largest: int = LARGEST) -> Fit:
+        """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects."""
         best = self.best_of_size(0)
         assert best is not None
-        for size in range(1, LARGEST + 1):
+        for size in range(1, largest + 1):
             larger = self.best_of_size(size)
             if larger is not None and betters(larger, best, self.data):
                 best = larger
-        return min(self.tied(best, self.of_size(best.explanation.size)), key=_preference)
-
-    def tied(self, best: Fit, among: Iterable[Fit]) -> list[Fit]:
-        """Those `among` some fits that the data cannot tell from `best`, itself if it is one of them.
-
-        They fit the training samples alike; one that fails on the choosing samples, where another does not, is out.
-        """
-        limit = best.chi2 + TIED * repetition(best)
-        fits = [fit for fit in among if fit.chi2 <= limit]
-        errors = [self.search.choosing_chi2(fit) for fit in fits]
-        lowest = min(errors, default=0.0)
-        worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))
-        return [fit for fit, chi2 in zip(fits, errors, strict=True) if chi2 <= worst]
+        return min(tied(best, self.of_size(best.explanation.size), self.search), key=_preference)
 
     def best_of_size(self, size: int) -> Fit | None:
         """The best fit among explanations of `size` quantities, None where none was tried."""
@@ -214,13 +182,17 @@ class Exploration:
                 return kept
             best = kept
 
-    def _sharpened(self, size: int) -> Fit | None:
-        """The best explanation of `size`, looked over again where it comes near the noise and does not reach it."""
-        best = self.best_of_size(size)
-        if best is None or not best.explanation.variants or not ADEQUATE < best.ratio < NEAR:
-            return best
-        self._sharpen(best)
-        return self.best_of_size(size)
+    def sharpen(self, fits: Sequence[Fit]) -> None:
+        """Look fits of one size over again: rough ones near the best of all, and the best if near the noise."""
+        best = self.best_of_size(fits[0].explanation.size) if fits else None
+        if best is None:
+            return
+        chosen = [fit for fit in fits if _deserves_sharpening(fit, best)]
+        if not adequate(best) and best.explanation.variants and (is_rough(best.explanation) or best.ratio < NEAR):
+            chosen.append(best)
+        chosen = sorted(chosen, key=lambda fit: fit.chi2)[:SHARPENED]
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(self._sharpen, chosen))
 
     def _promising(self, best: Fit) -> list[Explanation]:
         """Explanations of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
@@ -228,7 +200,7 @@ class Exploration:
         Single drifts come first: an effect beside a drift is more frequent than two effects, and found sooner.
         """
         size = best.explanation.size
-        if best.ratio <= ADEQUATE:
+        if adequate(best):
             return [best.explanation]
         rivals = [fit for fit in self.fits.values() if fit.explanation.size == size]
         steady = [fit.chi2 for fit in rivals if fit.explanation.changed is None]
@@ -237,61 +209,44 @@ class Exploration:
         alone = [fit.explanation for fit in rivals if not fit.explanation.variants and size == 1]
         return list(dict.fromkeys(alone + [fit.explanation for fit in rivals[:RIVALS]]))
 
-    def grow(self, seed: Explanation) -> None:
-        """Fit every explanation that has one quantity more than `seed`."""
-        if seed in self._grown:
+    def _try_first(self, seeds: list[Explanation]) -> None:
+        """Fit what linear steps promise most on any of the `seeds`.
+
+        Often one of them accounts for all, long before every seed is grown.
+        """
+        if len(seeds) < 2:
             return
-        self._grown.add(seed)
-        base = self.fits.get(seed) or self.add(seed)
-        bases = {search: search.linearised(base) for search in (self.search, self.glance)}
-        quick = self.search if _shows_late(bases[self.glance], bases[self.search]) else self.glance
         with ThreadPoolExecutor(2) as pool:
-            prospects = list(pool.map(lambda task: self._prospect(bases, quick, *task), self._tasks(seed, base)))
+            prospects = [prospect for seed in seeds for prospect in self.outlook.on(self._base(seed), self.fits, pool)]
+            promising = most_promising(prospects, TRIED_FIRST)
+            tastes = [taste for tasted in pool.map(self._taste, promising) for taste in tasted]
+            looks = list(pool.map(self._look, _best_looks(tastes)[:LOOKED_AT]))
+            fits = list(pool.map(self._finish, [look.fit for look in _best_looks(looks)[:FINISHED]]))
+        self._hasty |= {fit.explanation for fit in fits}
+
+    def grow(self, seed: Explanation) -> list[Fit]:
+        """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""
+        if seed in self._grown:
+            return []
+        self._grown.add(seed)
+        base = self._base(seed)
+        with ThreadPoolExecutor(2) as pool:
+            prospects = self.outlook.on(base, self.fits.keys() - self._hasty, pool)
+            known = self.best_of_size(seed.size + 1)
+            if known is not None and adequate(known) and not adequate(base):
+                prospects = most_promising(prospects, REPLACING)
             tastes = [taste for tasted in pool.map(self._taste, prospects) for taste in tasted]
             looks = list(pool.map(self._look, self._hopeful(tastes, seed.size + 1)))
-            finished = list(pool.map(self._finish, self._worth_finishing(bases, _best_of_each(looks))))
-            if bases[self.search].ratio > ADEQUATE:
-                list(pool.map(self._sharpen, self._worth_sharpening(finished, seed.size + 1)))
+            fits = list(pool.map(self._finish, self._worth_finishing(base, _best_looks(looks))))
+        self._hasty -= {fit.explanation for fit in fits}
+        return fits
 
-    def _tasks(self, seed: Explanation, base: Fit) -> list[tuple[Explanation, Growth]]:
-        """The explanations to try on top of `seed`, each with what is added."""
-        grown: list[tuple[Explanation, Growth]] = []
-        for name in self.drifts:
-            grown.append((Explanation((*seed.drifted, name), seed.variants, seed.changed), name))
-            if not seed.variants and seed.changed is None and len(self.data.runs) == 1:
-                grown.append((Explanation(seed.drifted, seed.variants, name), name))
-        for variant, starts in starts_of(self.data, base.model).items():
-            grown.append((seed.plus(variant), (variant, starts)))
-        tasks: dict[Explanation, Growth] = {}
-        for explanation, growth in grown:
-            key = canonical(explanation, self.drifts)
-            if key is not None and key not in self.fits:
-                tasks.setdefault(key, growth)
-        return list(tasks.items())
-
-    def _prospect(self, bases: dict[Search, Fit], quick: Search, explanation: Explanation, growth: Growth) -> Prospect:
-        """Where to start looking at a grown explanation: what promises most on top of the base, if anything does."""
-        self.progress(label(explanation))
-        if isinstance(growth, str):
-            if explanation.changed != growth:
-                return Prospect(explanation, growth, quick, (bases[quick].values,))
-            starts = self.search.change_starts(bases[self.search], growth, STARTS_TRIED)
-            return Prospect(explanation, growth, self.search, tuple(starts))
-        variant, tried = growth
-        search = self.search if variant.effect in TIMED or explanation.changed else quick
-        base = bases[search]
-        promised = search.screened(base, variant, tried)[:STARTS_TRIED]
-        known = self.best_of_size(explanation.size)
-        if base.ratio <= ADEQUATE:
-            promised = [pair for pair in promised if base.chi2 - pair[0] > PROMISING]
-        elif known is not None and known.ratio <= ADEQUATE:
-            promised = [pair for pair in promised if pair[0] < REPLACING**2 * base.chi2]
-        starts = [{**base.values, **start} for _, start in promised]
-        return Prospect(explanation, growth, search, tuple(starts))
+    def _base(self, seed: Explanation) -> Fit:
+        return self.fits.get(seed) or self.add(seed)
 
     def _taste(self, prospect: Prospect) -> list[Look]:
         """A few iterations from each start."""
-        self.progress(label(prospect.explanation))
+        self.progress(prospect.explanation.label)
         fits = (prospect.search.fit(prospect.explanation, start, TASTE) for start in prospect.starts)
         return [Look(prospect, start, fit) for start, fit in zip(prospect.starts, fits, strict=True)]
 
@@ -312,55 +267,47 @@ class Exploration:
     def _look(self, taste: Look) -> Look:
         """A brief fit that goes on from a taste; where the cost is rough, also one that forgives large errors."""
         prospect = taste.prospect
-        self.progress(label(prospect.explanation))
+        self.progress(prospect.explanation.label)
         search, explanation = prospect.search, prospect.explanation
         fits = [search.fit(explanation, taste.fit.values, BRIEF - TASTE)]
-        if prospect.rough and fits[0].ratio > ADEQUATE:
+        if prospect.rough and not adequate(fits[0]):
             forgiving = search.fit(explanation, taste.start, BRIEF, forgiving=True)
             fits.append(search.fit(explanation, forgiving.values, BRIEF))
         best = min(fits, key=lambda fit: fit.ratio)
         return Look(prospect, taste.start, search.dated(best) if prospect.changes else best)
 
-    def _worth_finishing(self, bases: dict[Search, Fit], looks: list[Look]) -> list[Fit]:
-        """Looks that deserve a whole fit: the best; on an adequate base only what gains noticeably."""
-        if bases[self.search].ratio <= ADEQUATE:
-            return [look.fit for look in looks if bases[look.prospect.search].chi2 - look.fit.chi2 > PROMISING]
-        fits = sorted((look.fit for look in looks), key=lambda fit: fit.ratio)
+    def _worth_finishing(self, base: Fit, looks: list[Look]) -> list[Fit]:
+        """Of `looks`, the best first, those that deserve a whole fit; on an adequate base, what gains noticeably."""
+        if adequate(base):
+            return [look.fit for look in looks if look.prospect.base.chi2 - look.fit.chi2 > PROMISING]
+        fits = [look.fit for look in looks]
         near = 1.3 * fits[0].ratio if fits else 0.0
         return [
             fit for rank, fit in enumerate(fits) if rank < FINISHED or fit.ratio < near or not fit.explanation.variants
         ]
 
-    def _worth_sharpening(self, finished: list[Fit], size: int) -> list[Fit]:
-        """Whole fits with a rough cost that come near the best of their `size`."""
-        best = self.best_of_size(size)
-        rough = [fit for fit in finished if best is not None and _deserves_sharpening(fit, best)]
-        return sorted(rough, key=lambda fit: fit.chi2)[:SHARPENED]
-
     def _finish(self, look: Fit) -> Fit:
-        self.progress(label(look.explanation))
+        self.progress(look.explanation.label)
         return self.add(look.explanation, look.values)
 
     def _sharpen(self, fit: Fit) -> None:
         """Look a fit over again, once."""
         if fit.explanation not in self._sharp:
             self._sharp.add(fit.explanation)
-            self.progress(f"{label(fit.explanation)}, once more")
+            self.progress(f"{fit.explanation.label}, once more")
             self.fits[fit.explanation] = polished(self.search, fit)
 
 
 def _deserves_sharpening(fit: Fit, best: Fit) -> bool:
-    """Whether the cost of a fit is rough, and it comes near the best."""
-    return is_rough(fit.explanation) and fit.ratio < COMPARABLE * best.ratio
+    """Whether the cost of a fit is rough, and it comes near the best without being its equal."""
+    return is_rough(fit.explanation) and alike(best) < fit.chi2 and fit.ratio < COMPARABLE * best.ratio
 
 
-def _best_of_each(looks: list[Look]) -> list[Look]:
-    """The best look at each explanation."""
+def _best_looks(looks: list[Look]) -> list[Look]:
+    """The best look at each explanation, the best first."""
     best: dict[Explanation, Look] = {}
-    for look in looks:
-        known = best.get(look.fit.explanation)
-        if known is None or look.fit.ratio < known.fit.ratio:
-            best[look.fit.explanation] = look
+    for look in sorted(looks, key=lambda look: look.fit.ratio):
+        best.setdefault(look.fit.explanation, look)
     return list(best.values())
 
 
@@ -372,37 +319,7 @@ def _faded(variant: Variant, fit: Fit, share: float) -> Variant:
     return Variant(variant.effect, (), tuple(scaled.items()))
 
 
-def _shows_late(glance: Fit, whole: Fit) -> bool:
-    """Whether the first look would miss most of what is left to explain."""
-    return glance.ratio**2 - 1.0 < LATE * (whole.ratio**2 - 1.0)
-
-
 def _preference(fit: Fit) -> tuple[int, bool, int, float]:
     """Order among explanations that fit alike: least effects, a drift before a change, least numbers, then by fit."""
     explanation = fit.explanation
     return len(explanation.variants), explanation.changed is not None, len(explanation.names), fit.chi2
-
-
-def drifting(nominal: Model) -> tuple[str, ...]:
-    """Names of what may drift: the free base parameters, and the parameters of effects the actuator always has."""
-    own = tuple(f"{effect}.{name}" for effect, values in nominal.actuator.effects.items() for name in values)
-    return nominal.actuator.free + own
-
-
-def canonical(explanation: Explanation, order: Sequence[str]) -> Explanation | None:
-    """The same explanation in one order; None where a quantity stands twice."""
-    drifted = tuple(name for name in order if name in explanation.drifted)
-    effects = explanation.effects
-    always = {name.split(".")[0] for name in order if "." in name}
-    if len(drifted) < len(explanation.drifted) or len(set(effects)) < len(effects) or always & set(effects):
-        return None
-    if explanation.changed in drifted:
-        return None
-    variants = tuple(sorted(explanation.variants, key=lambda variant: variant.effect))
-    return Explanation(drifted, variants, explanation.changed)
-
-
-def label(explanation: Explanation) -> str:
-    """For people: what changes."""
-    change = (f"change of {explanation.changed}",) if explanation.changed else ()
-    return " + ".join((*explanation.drifted, *change, *(v.label for v in explanation.variants))) or "nominal"

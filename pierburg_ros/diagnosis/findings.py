@@ -19,7 +19,7 @@ from pierburg_ros.diagnosis.schema import (
     NotTestable,
 )
 from pierburg_ros.diagnosis.search import Fit
-from pierburg_ros.diagnosis.significance import SIGNIFICANT, gain
+from pierburg_ros.diagnosis.significance import SIGNIFICANT, gain, tied
 from pierburg_ros.diagnosis.wording import effect_explanation, untestable
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
@@ -110,14 +110,14 @@ def fit_quality(exploration: Exploration, conclusion: Conclusion, final: Model) 
 def candidates(exploration: Exploration, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
     """The explanations tried, the best first: error on unseen samples, evidence, status."""
     data, chosen = exploration.data, conclusion.chosen
-    tied = {id(fit) for fit in exploration.tied(chosen, exploration.of_size(chosen.explanation.size))}
+    equals = {id(fit) for fit in tied(chosen, exploration.of_size(chosen.explanation.size), exploration.search)}
     ranked = sorted(exploration.fits.values(), key=lambda fit: (fit is not chosen, fit.chi2))
     return [
         Candidate(
             id=identifier(fit),
             validation_rmse=rmse(data, fit.model, fit.switch, False),
             evidence=gain(conclusion.recalibrated, fit),
-            status="chosen" if fit is chosen else "tied" if id(fit) in tied else "rejected",
+            status="chosen" if fit is chosen else "tied" if id(fit) in equals else "rejected",
         )
         for fit in ranked[:most]
     ]

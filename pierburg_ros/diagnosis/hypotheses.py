@@ -1,4 +1,4 @@
-"""Every way in which a catalogue effect may act, and the values from which its search starts."""
+"""What may be the case: which parameters may drift, how a catalogue effect may act, and where its search starts."""
 
 from __future__ import annotations
 
@@ -68,6 +68,14 @@ FREQUENCIES = (0.1, 20.0)
 """Range in which the rhythm of a load is looked for [Hz]."""
 ROUGH = frozenset({"static_friction", "backlash", "position_dependent_friction", "external_load", "input_delay"})
 """Effects whose cost has many local minima, since events jump with their parameters."""
+TIMED = frozenset({"external_load", "thermal_resistance"})
+"""Effects that go by the time since the start: no stretch of a recording shows them by itself."""
+
+
+def drifting(nominal: Model) -> tuple[str, ...]:
+    """Names of what may drift: the free base parameters, and the parameters of effects the actuator always has."""
+    own = tuple(f"{effect}.{name}" for effect, values in nominal.actuator.effects.items() for name in values)
+    return nominal.actuator.free + own
 
 
 def is_rough(explanation: Explanation) -> bool:

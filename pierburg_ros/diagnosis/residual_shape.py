@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, held_back, rms
+from pierburg_ros.diagnosis.hypotheses import TIMED
 from pierburg_ros.diagnosis.least_squares import minimise
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.restarts import restarted
@@ -39,8 +40,6 @@ STRETCH = 1.0
 """Length of the stretches that are simulated each from the measured state [s]."""
 STRETCHES = 24
 """Into how many stretches of time the missing torque is averaged."""
-TIMED = frozenset({"external_load", "thermal_resistance"})
-"""Effects that need the whole past, so that a run cannot be simulated in stretches."""
 
 
 Way = Callable[[EvidenceData], Model]

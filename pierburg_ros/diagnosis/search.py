@@ -175,6 +175,12 @@ class Search:
             promised.append((float(left @ left), _scaled(base.model, variant, used, scale)))
         return sorted(promised, key=lambda pair: pair[0])
 
+    def stepped(self, fit: Fit) -> float:
+        """The chi2 that one linear step from `fit` promises."""
+        basis = np.linalg.qr(fit.solution.jacobian)[0]
+        left = fit.solution.residual - basis @ (basis.T @ fit.solution.residual)
+        return float(left @ left)
+
     def marks(self, base: Fit, variant: Variant, starts: Sequence[Start]) -> list[float]:
         """Sum of squares [noise^2] that each start leaves in the simulated signal after a linear re-fit of `base`."""
         basis = np.linalg.qr(base.solution.jacobian)[0]

@@ -8,6 +8,8 @@ from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
 from pierburg_ros.diagnosis.evidence_data import choosing_blocks, evidence_of
 from pierburg_ros.diagnosis.explanation import WHEN, Explanation
 from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.search import Search
+from pierburg_ros.diagnosis.significance import tied
 from pierburg_ros.identification.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
 from pierburg_ros.recording import Channel, Recording
@@ -86,5 +88,5 @@ def test_of_explanations_that_fit_alike_one_that_fails_on_the_choosing_samples_i
 
 def test_only_known_fits_are_tied() -> None:
     """A model with a residual torque stands beside what was explored."""
-    exploration = Exploration(evidence_of([recording({})], PIERBURG), NOMINAL)
-    assert exploration.tied(exploration.search.fit(Explanation()), []) == []
+    search = Search(evidence_of([recording({})], PIERBURG), NOMINAL)
+    assert tied(search.fit(Explanation()), [], search) == []

@@ -1,12 +1,22 @@
 """A larger explanation needs more than chance, and beside an effect more than what simulators differ by."""
 
+from dataclasses import replace
+
 import pytest
 from recordings import NOMINAL, PIERBURG, recording
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, evidence_of
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search import Fit, Search
-from pierburg_ros.diagnosis.significance import SIGNIFICANT, accounts_for_all, allowance, betters, gain
+from pierburg_ros.diagnosis.significance import (
+    SIGNIFICANT,
+    accounts_for_all,
+    adequate,
+    allowance,
+    betters,
+    complete,
+    gain,
+)
 
 LAG = Variant("sensor_lag", ("time_constant",))
 TRUE = {"sensor_lag.time_constant": 0.012}
@@ -39,3 +49,13 @@ def test_a_plain_drift_beside_an_effect_betters_it() -> None:
     assert not accounts_for_all(lag, data)
     assert accounts_for_all(larger, data)
     assert betters(larger, lag, data)
+
+
+def test_white_noise_larger_than_estimated_is_all_there_is_and_structure_is_not() -> None:
+    data = evidence_of([recording({**TRUE, "spring_preload": 0.2901})], PIERBURG)
+    low, explanation = replace(data, noise=0.0028), Explanation((), (LAG,))
+    structured = Search(data, NOMINAL).fit(explanation, TRUE)
+    noise = Search(low, NOMINAL).fit(replace(explanation, drifted=("spring_preload",)), TRUE)
+    assert 1.03 < structured.ratio < noise.ratio < 1.1
+    assert adequate(noise) and complete(noise)
+    assert not adequate(structured) and not complete(structured)
