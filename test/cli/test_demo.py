@@ -1,0 +1,42 @@
+"""What `pierburg demo` conceals is found, in a recording of the same loop made without a graph."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from pierburg_ros.cli.app import main
+from pierburg_ros.cli.demo import CONCEALED, NOISE, SETPOINTS
+
+
+def run(*arguments: object) -> None:
+    with pytest.raises(SystemExit) as ending:
+        main(list(map(str, arguments)))
+    assert ending.value.code == 0
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """The concealed valve under the controller, with the demo's setpoints and noise."""
+    friction = {name.split(".")[1]: value for name, value in CONCEALED.items() if name.startswith("static_friction.")}
+    model = {
+        "actuator": "pierburg",
+        "parameters": {"spring_preload": CONCEALED["spring_preload"]},
+        "effects": {"static_friction": friction},
+    }
+    (tmp_path / "model.yaml").write_text(json.dumps(model))
+    rows = "".join(f"{time},{setpoint}\n" for time, setpoint in SETPOINTS)
+    (tmp_path / "setpoints.csv").write_text("time,setpoint\n" + rows)
+    options = ("--model", tmp_path / "model.yaml", "--setpoints", tmp_path / "setpoints.csv", "--noise", NOISE)
+    run("simulate", *options, "--output", tmp_path / "run")
+    return tmp_path / "run/simulated.mcap"
+
+
+def test_the_concealed_effect_is_named_alone_beside_the_drift(recording: Path, tmp_path: Path) -> None:
+    run("diagnose", recording, "--output", tmp_path / "diagnosis")
+    found = json.loads((tmp_path / "diagnosis/diagnosis.json").read_text())
+    assert found["verdict"] == "missing_physics"
+    assert [effect["id"] for effect in found["effects"]] == ["static_friction"]
+    assert [name for name, value in found["parameters"].items() if value["drifted"]] == ["spring_preload"]
+    torque = found["effects"][0]["parameters"]["breakaway_torque"]["value"]
+    assert torque == pytest.approx(CONCEALED["static_friction.breakaway_torque"], rel=0.03)
