@@ -65,8 +65,7 @@ def recorded_run(folder: Path, name: str, physics: Mapping[str, float], simulate
     controller wait for each other, so that a busy machine loses no tick.
     """
     setpoints, recording = folder / "setpoints.csv", folder / name
-    rows = [f"{time},{setpoint}" for time, setpoint in SETPOINTS]
-    setpoints.write_text("\n".join(["time,setpoint", *rows]) + "\n")
+    write_setpoints(setpoints)
     environment = own_graph()
     pace = {"simulated_time": True, "lockstep": True} if simulated_time else {}
     nodes: dict[str, dict[str, object]] = {
@@ -83,6 +82,12 @@ def recorded_run(folder: Path, name: str, physics: Mapping[str, float], simulate
     with running(nodes, folder / "nodes.log", environment):
         play("setpoint", setpoints, recording, simulated_time, environment)
     return recording
+
+
+def write_setpoints(path: Path) -> None:
+    """Write the setpoints of the demo as a course file."""
+    rows = (f"{time},{setpoint}\n" for time, setpoint in SETPOINTS)
+    path.write_text("time,setpoint\n" + "".join(rows))
 
 
 def compile_kernels() -> None:

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
-from pierburg_ros.cli.demo import CONCEALED, NOISE, SETPOINTS
+from pierburg_ros.cli.demo import CONCEALED, NOISE, write_setpoints
+from pierburg_ros.plant import Model
 
 
 def run(*arguments: object) -> None:
@@ -18,17 +20,10 @@ def run(*arguments: object) -> None:
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
     """The concealed valve under the controller, with the demo's setpoints and noise."""
-    friction = {name.split(".")[1]: value for name, value in CONCEALED.items() if name.startswith("static_friction.")}
-    model = {
-        "actuator": "pierburg",
-        "parameters": {"spring_preload": CONCEALED["spring_preload"]},
-        "effects": {"static_friction": friction},
-    }
-    (tmp_path / "model.yaml").write_text(json.dumps(model))
-    rows = "".join(f"{time},{setpoint}\n" for time, setpoint in SETPOINTS)
-    (tmp_path / "setpoints.csv").write_text("time,setpoint\n" + rows)
-    options = ("--model", tmp_path / "model.yaml", "--setpoints", tmp_path / "setpoints.csv", "--noise", NOISE)
-    run("simulate", *options, "--output", tmp_path / "run")
+    model, setpoints = tmp_path / "model.yaml", tmp_path / "setpoints.csv"
+    Model.nominal(read_actuator("pierburg")).with_values(CONCEALED).write(model)
+    write_setpoints(setpoints)
+    run("simulate", "--model", model, "--setpoints", setpoints, "--noise", NOISE, "--output", tmp_path / "run")
     return tmp_path / "run/simulated.mcap"
 
 
