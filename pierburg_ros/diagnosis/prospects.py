@@ -64,9 +64,18 @@ class Outlook:
         self.search, self.glance = search, glance
         self.drifts = drifts
         self.progress = progress
+        self._seen: dict[Explanation, tuple[Fit, list[Prospect]]] = {}
 
     def on(self, fit: Fit, known: Container[Explanation], pool: Executor) -> list[Prospect]:
-        """What may be added to the explanation of `fit` besides what is `known`: at a glance, unless it shows late."""
+        """What may be added to the explanation of `fit` besides what is `known`; looked for once while `fit` stands."""
+        base, prospects = self._seen.get(fit.explanation, (None, []))
+        if base is not fit:
+            prospects = self._from(fit, known, pool)
+            self._seen[fit.explanation] = fit, prospects
+        return [prospect for prospect in prospects if prospect.explanation not in known]
+
+    def _from(self, fit: Fit, known: Container[Explanation], pool: Executor) -> list[Prospect]:
+        """What may be added to `fit`, with its promise: at a glance, unless what it leaves shows late."""
         seed = fit.explanation
         whole = self.search.linearised(fit)
         glance = self.glance.linearised(whole)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -154,8 +154,8 @@ class Search:
         Each start is simulated once on top of `base`; what re-fitting the base could do about it is projected
         out; two starts that differ in phase alone count as one with a free phase.
         """
-        basis = np.linalg.qr(base.solution.jacobian)[0]
-        residual = base.solution.residual - basis @ (basis.T @ base.solution.residual)
+        projected = _projection(base)
+        residual = projected(base.solution.residual)
         promised = []
         for group in _in_quadrature(starts):
             columns, used = [], []
@@ -168,30 +168,27 @@ class Search:
                 used.append(own)
             if not columns:
                 continue
-            change = np.stack(columns, axis=1)
-            change -= basis @ (basis.T @ change)
-            scale, *_ = np.linalg.lstsq(change, residual, rcond=None)
+            change = projected(np.stack(columns, axis=1))
+            scale = np.asarray(np.linalg.lstsq(change, residual, rcond=None)[0], dtype=np.float64)
             left = residual - change @ scale
             promised.append((float(left @ left), _scaled(base.model, variant, used, scale)))
         return sorted(promised, key=lambda pair: pair[0])
 
     def stepped(self, fit: Fit) -> float:
         """The chi2 that one linear step from `fit` promises."""
-        basis = np.linalg.qr(fit.solution.jacobian)[0]
-        left = fit.solution.residual - basis @ (basis.T @ fit.solution.residual)
+        left = _projection(fit)(fit.solution.residual)
         return float(left @ left)
 
     def marks(self, base: Fit, variant: Variant, starts: Sequence[Start]) -> list[float]:
         """Sum of squares [noise^2] that each start leaves in the simulated signal after a linear re-fit of `base`."""
-        basis = np.linalg.qr(base.solution.jacobian)[0]
+        projected = _projection(base)
         sizes = []
         for start in starts:
             own = {f"{variant.effect}.{name}": value for name, value in start.items()}
             try:
-                change = base.solution.residual - self.residual(*self._added(base, variant, own))
+                change = projected(base.solution.residual - self.residual(*self._added(base, variant, own)))
             except InputError:
                 continue
-            change = change - basis @ (basis.T @ change)
             sizes.append(float(change @ change))
         return sizes
 
@@ -240,6 +237,12 @@ class Search:
             if len(starts) == most:
                 break
         return starts
+
+
+def _projection(fit: Fit) -> Callable[[Signal], Signal]:
+    """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
+    basis = np.linalg.qr(fit.solution.jacobian)[0]
+    return lambda residual: residual - basis @ (basis.T @ residual)
 
 
 def _forgiven(residual: Signal) -> Signal:
