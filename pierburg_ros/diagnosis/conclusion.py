@@ -56,8 +56,7 @@ class Conclusion:
 
 
 def conclude(exploration: Exploration) -> Conclusion:
-    """Run the exploration to its end and judge it."""
-    exploration.run()
+    """What an exploration that has been run amounts to."""
     explore_alternatives(exploration, exploration.preferred())
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)

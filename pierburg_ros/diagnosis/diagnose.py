@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.across import select
 from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Run, evidence_of
 from pierburg_ros.diagnosis.explanation import Explanation
-from pierburg_ros.diagnosis.explore import Exploration, Progress
+from pierburg_ros.diagnosis.explore import Exploration, Progress, explored
 from pierburg_ros.diagnosis.locate import locations
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.recalibrations import recalibrations
@@ -53,7 +53,7 @@ def diagnose(
     `progress` is told what is being tried. InputError where the recordings cannot be used.
     """
     audit.refuse_unusable(recordings)
-    exploration = Exploration(evidence_of(recordings, nominal.actuator), nominal, progress)
+    exploration = explored(evidence_of(recordings, nominal.actuator), nominal, progress)
     data = exploration.data
     conclusion = conclude(exploration)
     shape = None

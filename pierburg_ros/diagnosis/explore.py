@@ -9,13 +9,23 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData
-from pierburg_ros.diagnosis.explanation import Explanation, Variant, quantities, without
-from pierburg_ros.diagnosis.hypotheses import Start, drifting, is_rough
+from pierburg_ros.diagnosis.cogging import through_stretches
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, after_choice
+from pierburg_ros.diagnosis.explanation import Explanation, Variant, canonical, quantities, without
+from pierburg_ros.diagnosis.hypotheses import COGGING, Start, drifting, is_rough
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.prospects import PROMISING, Outlook, Prospect, most_promising
 from pierburg_ros.diagnosis.search import Fit, Search
-from pierburg_ros.diagnosis.significance import ADEQUATE, accounts_for_all, adequate, alike, betters, complete, tied
+from pierburg_ros.diagnosis.significance import (
+    ADEQUATE,
+    accounts_for_all,
+    adequate,
+    alike,
+    betters,
+    complete,
+    overlooks,
+    tied,
+)
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
@@ -73,8 +83,9 @@ class Exploration:
         self.nominal = nominal
         self.fits: dict[Explanation, Fit] = {}
         self._grown: set[Explanation] = set()
-        self._hasty: set[Explanation] = set()
         self._sharp: set[Explanation] = set()
+        # fitted ahead of their turn, from one seed: growing another may find a better start
+        self._hasty: set[Explanation] = set()
         self.progress = progress
 
     def run(self) -> Fit:
@@ -103,6 +114,9 @@ class Exploration:
         best = self.preferred(size)
         if accounts_for_all(best, self.data):
             return
+        self._try_cogging(self._promising(best))
+        if self._complete(size + 1):
+            return
         for seed in self._promising(best):
             self.grow(seed)
             if not self._complete(size + 1):
@@ -117,11 +131,14 @@ class Exploration:
 
     def add(self, explanation: Explanation, start: Start | None = None, iterations: int = FULL) -> Fit:
         """Fit an explanation and keep it if it is the best of its kind so far."""
-        fit = self.search.fit(explanation, start, iterations)
-        known = self.fits.get(explanation)
+        return self._keep(self.search.fit(explanation, start, iterations))
+
+    def _keep(self, fit: Fit) -> Fit:
+        """The best fit of the same explanation so far, `fit` included."""
+        known = self.fits.get(fit.explanation)
         if known is None or fit.chi2 < known.chi2:
-            self.fits[explanation] = fit
-        return self.fits[explanation]
+            self.fits[fit.explanation] = fit
+        return self.fits[fit.explanation]
 
     def consider(self, explanation: Explanation, faded: Variant, rival: Fit) -> None:
         """Fit an explanation that stands for an effect of `rival` by other means, if it keeps up as the effect fades.
@@ -224,6 +241,22 @@ class Exploration:
             fits = list(pool.map(self._finish, [look.fit for look in _best_looks(looks)[:FINISHED]]))
         self._hasty |= {fit.explanation for fit in fits}
 
+    def _try_cogging(self, seeds: list[Explanation]) -> None:
+        """Fit cogging on top of the `seeds` by the one way that leads to it where the shaft has slipped."""
+        if len(seeds) < 2:
+            return
+        bases: dict[Explanation, Fit] = {}
+        for seed in seeds:
+            explanation = canonical(seed.plus(COGGING), self.drifts)
+            if explanation is not None:
+                bases[explanation] = self._base(seed)
+                self.progress(explanation.label)
+        with ThreadPoolExecutor(2) as pool:
+            fits = through_stretches(self.search, bases, pool)
+        for fit in fits:
+            self._keep(fit)
+        self.sharpen(fits)
+
     def grow(self, seed: Explanation) -> list[Fit]:
         """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""
         if seed in self._grown:
@@ -298,9 +331,18 @@ class Exploration:
             self.fits[fit.explanation] = polished(self.search, fit)
 
 
+def explored(data: EvidenceData, nominal: Model, progress: Progress = lambda _: None) -> Exploration:
+    """The exploration of `data`, run to its end; where an effect shows only in samples that choose, those train too."""
+    exploration = Exploration(data, nominal, progress)
+    if overlooks(exploration.run(), exploration.search):
+        exploration = Exploration(after_choice(data), nominal, progress)
+        exploration.run()
+    return exploration
+
+
 def _deserves_sharpening(fit: Fit, best: Fit) -> bool:
     """Whether the cost of a fit is rough, and it comes near the best without being its equal."""
-    return is_rough(fit.explanation) and alike(best) < fit.chi2 and fit.ratio < COMPARABLE * best.ratio
+    return is_rough(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.chi2
 
 
 def _best_looks(looks: list[Look]) -> list[Look]:

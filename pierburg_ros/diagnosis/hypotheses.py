@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
-from pierburg_ros.diagnosis.torque_residual import missing_torque, rhythms, spans, tight_spots
+from pierburg_ros.diagnosis.torque_residual import MissingTorque, missing_torque, rhythms, spans, tight_spots
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
@@ -62,6 +62,8 @@ Cogging, tight spots and external loads start from what the data show, see `star
 not searched for but seen, see `resolution.py`."""
 
 
+COGGING = Variant("cogging_torque", ("amplitude", "periods_per_motor_revolution", "phase"))
+"""Cogging, the number of teeth unknown."""
 TURNS = (0.9, 16.0)
 """Range in which periods of cogging per motor revolution are looked for."""
 FREQUENCIES = (0.1, 20.0)
@@ -83,15 +85,19 @@ def is_rough(explanation: Explanation) -> bool:
     return not ROUGH.isdisjoint(explanation.effects)
 
 
+def turns(missing: MissingTorque, model: Model) -> list[float]:
+    """The strongest rhythms of a missing torque [periods per motor revolution], strongest first, at most four."""
+    return rhythms(missing.angle * model.values["gear_ratio"] / (2 * math.pi), missing.torque, TURNS, 4)
+
+
 def starts_of(data: EvidenceData, model: Model) -> dict[Variant, list[Start]]:
     """Starting values by variant on top of `model`: rhythms in angle and time from the torque that it misses."""
     starts = dict(STARTS)
     run = data.runs[0]
     missing = missing_torque(data, run, model)
-    turns = rhythms(missing.angle * model.values["gear_ratio"] / (2 * math.pi), missing.torque, TURNS, 4)
-    starts[Variant("cogging_torque", ("amplitude", "periods_per_motor_revolution", "phase"))] = [
+    starts[COGGING] = [
         {"amplitude": 0.02, "periods_per_motor_revolution": periods, "phase": phase}
-        for periods in dict.fromkeys((*turns, 2.0, 3.0, 6.0))
+        for periods in dict.fromkeys((*turns(missing, model), 2.0, 3.0, 6.0))
         for phase in _BOTH
     ]
     starts[Variant("external_load", ("amplitude", "frequency", "phase"))] = [

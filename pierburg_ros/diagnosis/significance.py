@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
 
@@ -59,6 +61,14 @@ def accounts_for_all(fit: Fit, data: EvidenceData) -> bool:
     return small and repetition(fit) < WHITE
 
 
+def overlooks(fit: Fit, search: Search) -> bool:
+    """Whether an explanation without an effect accounts for the samples that train, but not for those that choose."""
+    if fit.explanation.variants or not adequate(fit):
+        return False
+    samples = int(np.count_nonzero(search.data.choosing))
+    return search.choosing_chi2(fit) > samples * (EXPLAINED * fit.ratio) ** 2
+
+
 def allowance(fit: Fit, data: EvidenceData) -> float:
     """Chi2 by which two simulations of an explanation may differ; without an effect they agree."""
     if not fit.explanation.variants:
@@ -76,7 +86,8 @@ def tied(best: Fit, among: Iterable[Fit], search: Search) -> list[Fit]:
 
     They fit the training samples alike; one that fails on the choosing samples, where another does not, is out.
     """
-    fits = [fit for fit in among if fit.chi2 <= alike(best)]
+    limit = alike(best)
+    fits = [fit for fit in among if fit.chi2 <= limit]
     errors = [search.choosing_chi2(fit) for fit in fits]
     lowest = min(errors, default=0.0)
     worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))

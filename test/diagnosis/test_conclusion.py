@@ -1,5 +1,7 @@
 """From recordings to a verdict: nothing, a drift, a change, an effect, an effect behind a drift, a tie."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recordings import NOMINAL, PIERBURG, recording, recording_under
@@ -7,9 +9,9 @@ from recordings import NOMINAL, PIERBURG, recording, recording_under
 from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
 from pierburg_ros.diagnosis.evidence_data import choosing_blocks, evidence_of
 from pierburg_ros.diagnosis.explanation import WHEN, Explanation
-from pierburg_ros.diagnosis.explore import Exploration
+from pierburg_ros.diagnosis.explore import explored
 from pierburg_ros.diagnosis.search import Search
-from pierburg_ros.diagnosis.significance import tied
+from pierburg_ros.diagnosis.significance import adequate, overlooks, tied
 from pierburg_ros.identification.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
 from pierburg_ros.recording import Channel, Recording
@@ -18,7 +20,7 @@ DEAD = {"pwm_deadband.width": 0.02}
 
 
 def conclusion_on(changes: dict[str, float], seed: int = 0) -> Conclusion:
-    return conclude(Exploration(evidence_of([recording(changes, seed=seed)], PIERBURG), NOMINAL))
+    return conclude(explored(evidence_of([recording(changes, seed=seed)], PIERBURG), NOMINAL))
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -59,6 +61,17 @@ def test_viscous_friction_comes_with_its_exact_tie() -> None:
     assert ("armature_resistance", "supply_voltage") in ties
 
 
+def test_an_effect_that_only_what_chooses_shows_is_named() -> None:
+    load = {"external_load.torque": 0.06, "external_load.start": 3.2, "external_load.end": 3.7}
+    data = evidence_of([recording(load)], PIERBURG)
+    (run,) = data.runs
+    during = (run.time > 3.0) & (run.time < 9.0)
+    hidden = replace(data, runs=(replace(run, training=run.training & ~during, choosing=during),))
+    nominal = Search(hidden, NOMINAL).fit(Explanation())
+    assert adequate(nominal) and overlooks(nominal, Search(hidden, NOMINAL))
+    assert explored(hidden, NOMINAL).preferred().explanation.effects == ("external_load",)
+
+
 def test_a_change_in_the_middle_is_dated() -> None:
     plain = recording({})
     after = NOMINAL.with_values({"armature_resistance": 4.9})
@@ -66,7 +79,7 @@ def test_a_change_in_the_middle_is_dated() -> None:
     noise = 0.003 * np.random.default_rng(7).standard_normal(hall.size)
     duty = Channel(plain.time, plain.duty.values)
     changed = Recording("changed.mcap", "hall_voltage", plain.time, hall + noise, duty)
-    found = conclude(Exploration(evidence_of([changed], PIERBURG), NOMINAL))
+    found = conclude(explored(evidence_of([changed], PIERBURG), NOMINAL))
     assert found.verdict == "parameter_drift"
     assert found.chosen.explanation.changed == "armature_resistance"
     assert found.chosen.values["armature_resistance" + WHEN] == pytest.approx(13.4, abs=0.3)
@@ -80,7 +93,7 @@ def test_of_explanations_that_fit_alike_one_that_fails_on_the_choosing_samples_i
     choosing = choosing_blocks(time)
     duty[choosing & (time % 1.5 > 0.5)] = 0.0
     duty[np.roll(choosing, round(1.5 / 0.002))] = 0.36  # to the open stop, where the valve forgets where it came from
-    found = conclude(Exploration(evidence_of([recording_under(duty, time, DEAD, random)], PIERBURG), NOMINAL))
+    found = conclude(explored(evidence_of([recording_under(duty, time, DEAD, random)], PIERBURG), NOMINAL))
     assert found.chosen.explanation.effects == ("pwm_deadband",)
     assert found.chosen.explanation.drifted == ()
     assert ("spring_preload",) not in {alternative.instead for alternative in found.alternatives}

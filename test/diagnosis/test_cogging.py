@@ -1,0 +1,50 @@
+"""Cogging beside a drift is found through stretches where descents over the whole recording end elsewhere."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from recordings import NOMINAL, PIERBURG, recording
+
+from pierburg_ros.diagnosis.cogging import through_stretches
+from pierburg_ros.diagnosis.evidence_data import evidence_of
+from pierburg_ros.diagnosis.explanation import Explanation, Variant
+from pierburg_ros.diagnosis.hypotheses import COGGING, starts_of
+from pierburg_ros.diagnosis.search import Search
+
+SUPPLY = Explanation(("supply_voltage",))
+COGGED = {
+    "cogging_torque.amplitude": 0.035,
+    "cogging_torque.periods_per_motor_revolution": 4.0,
+    "cogging_torque.phase": 0.7,
+}
+
+
+def search_in(changes: dict[str, float]) -> Search:
+    return Search(evidence_of([recording({"supply_voltage": 12.8, **changes})], PIERBURG), NOMINAL)
+
+
+def test_stretches_lead_to_the_noise_where_whole_recordings_do_not() -> None:
+    search = search_in(COGGED)
+    base, both = search.fit(SUPPLY), SUPPLY.plus(COGGING)
+    starts = search.screened(base, COGGING, starts_of(search.data, base.model)[COGGING])[:4]
+    assert min(search.fit(both, {**base.values, **start}).ratio for _, start in starts) > 2.0
+    with ThreadPoolExecutor(2) as pool:
+        (found,) = through_stretches(search, {both: base}, pool)
+    assert found.ratio == pytest.approx(1.0, abs=0.02)
+    for name, value in COGGED.items():
+        assert found.values[name] == pytest.approx(value, rel=0.01)
+
+
+def test_where_cogging_explains_little_it_is_not_followed_up() -> None:
+    search = search_in({"viscous_friction.coefficient": 0.03})
+    with ThreadPoolExecutor(2) as pool:
+        assert through_stretches(search, {SUPPLY.plus(COGGING): search.fit(SUPPLY)}, pool) == []
+
+
+def test_what_goes_by_the_clock_or_changes_midway_is_left_out() -> None:
+    search = search_in({})
+    load = Explanation((), (COGGING, Variant("external_load", ("torque", "start", "end"))))
+    change = Explanation((), (COGGING,), "spring_preload")
+    base = search.fit(Explanation())
+    with ThreadPoolExecutor(2) as pool:
+        assert through_stretches(search, {load: base, change: base}, pool) == []
