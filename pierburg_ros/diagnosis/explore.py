@@ -252,9 +252,7 @@ class Exploration:
                 bases[explanation] = self._base(seed)
                 self.progress(explanation.label)
         with ThreadPoolExecutor(2) as pool:
-            fits = through_stretches(self.search, bases, pool)
-        for fit in fits:
-            self._keep(fit)
+            fits = [self._keep(fit) for fit in through_stretches(self.search, bases, pool)]
         self.sharpen(fits)
 
     def grow(self, seed: Explanation) -> list[Fit]:
