@@ -245,12 +245,9 @@ class Exploration:
         """Fit cogging on top of the `seeds` by the one way that leads to it where the shaft has slipped."""
         if len(seeds) < 2:
             return
-        bases: dict[Explanation, Fit] = {}
-        for seed in seeds:
-            explanation = canonical(seed.plus(COGGING), self.drifts)
-            if explanation is not None:
-                bases[explanation] = self._base(seed)
-                self.progress(explanation.label)
+        self.progress(f"{COGGING.label}, through stretches")
+        grown = ((canonical(seed.plus(COGGING), self.drifts), seed) for seed in seeds)
+        bases = {explanation: self._base(seed) for explanation, seed in grown if explanation is not None}
         with ThreadPoolExecutor(2) as pool:
             fits = [self._keep(fit) for fit in through_stretches(self.search, bases, pool)]
         self.sharpen(fits)
