@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.explore import Exploration
 from pierburg_ros.diagnosis.hypotheses import is_rough
 from pierburg_ros.diagnosis.polish import polished
-from pierburg_ros.diagnosis.resolution import coarse_step, rounded
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search import Fit, Search, repetition
 from pierburg_ros.diagnosis.significance import EXPLAINED
@@ -61,7 +60,7 @@ def conclude(exploration: Exploration) -> Conclusion:
     chosen = exploration.preferred()
     tied = alternatives(exploration, chosen)
     final, known = settled(exploration, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
-    if step := coarse_step(exploration.data):
+    if step := exploration.data.step:
         chosen, final = rounded(chosen, step), rounded(final, step)
         exploration.fits[chosen.explanation] = chosen
     return Conclusion(
@@ -89,6 +88,17 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
     return fit, estimates(search, fit)
 
 
+def rounded(fit: Fit, step: float) -> Fit:
+    """`fit` with its model's samples rounded to `step`; what it leaves is that of the smooth one."""
+    variant = Variant("sensor_quantization", (), (("step", step),))
+    values = {"sensor_quantization.step": step}
+    switch = fit.switch and replace(fit.switch, model=fit.switch.model.with_values(values))
+    model = fit.model.with_values(values)
+    return replace(
+        fit, explanation=fit.explanation.plus(variant), values={**fit.values, **values}, model=model, switch=switch
+    )
+
+
 def _support(exploration: Exploration, chosen: Fit, variant: Variant) -> Support:
     if not variant.free:
         return Support(1.0, by_grid())
@@ -102,7 +112,7 @@ def _gain(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
         for fit in exploration.fits.values()
         if variant.effect not in fit.explanation.effects and fit.explanation.size <= chosen.explanation.size
     ]
-    return (min(fit.chi2 for fit in rivals) - chosen.chi2) / repetition(chosen)
+    return (min(fit.misfit for fit in rivals) - chosen.misfit) / repetition(chosen)
 
 
 def _confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> float:
@@ -110,7 +120,7 @@ def _confidence(exploration: Exploration, chosen: Fit, variant: Variant) -> floa
     weights = {True: 0.0, False: 0.0}
     for fit in exploration.fits.values():
         if fit.explanation.size == chosen.explanation.size:
-            lag = max((fit.chi2 - chosen.chi2) / repetition(chosen), 0.0)
+            lag = max((fit.misfit - chosen.misfit) / repetition(chosen), 0.0)
             weights[variant.effect in fit.explanation.effects] += math.exp(-0.5 * min(lag, 1400.0))
     return weights[True] / (weights[True] + weights[False])
 

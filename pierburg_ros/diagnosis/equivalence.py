@@ -30,7 +30,7 @@ def explore_alternatives(exploration: Exploration, best: Fit) -> None:
             for others in (*itertools.combinations(free, 1), *itertools.combinations(free, 2)):
                 key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), exploration.drifts)
                 known = exploration.fits.get(key) if key is not None else None
-                if key is not None and (known is None or known.chi2 > limit):
+                if key is not None and (known is None or known.misfit > limit):
                     exploration.consider(key, quantity, best)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.diagnosis.resolution import coarse_step
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.resimulation import Start, inputs_of
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
@@ -77,11 +78,16 @@ class Run:
 
 @dataclass(frozen=True)
 class EvidenceData:
-    """All recordings of one actuator; `noise` is the standard deviation of the sensor noise, measured unit."""
+    """All recordings of one actuator.
+
+    `noise` is the standard deviation of the sensor noise, `step` that of the converter where it is coarse beside the
+    noise, otherwise 0, both in the measured unit.
+    """
 
     actuator: Actuator
     runs: tuple[Run, ...]
     noise: float
+    step: float = 0.0
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Measured minus simulated over all runs, shape (samples,), in units of the noise."""
@@ -138,7 +144,7 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
         parts = training_blocks(time), choosing_blocks(time)
         runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, *parts))
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
-    return EvidenceData(actuator, tuple(runs), noise)
+    return EvidenceData(actuator, tuple(runs), noise, coarse_step([run.measured for run in runs], noise))
 
 
 def rms(values: Signal) -> float:

@@ -307,7 +307,7 @@ class Exploration:
     def _worth_finishing(self, base: Fit, looks: list[Look]) -> list[Fit]:
         """Of `looks`, the best first, those that deserve a whole fit; on an adequate base, what gains noticeably."""
         if adequate(base):
-            return [look.fit for look in looks if look.prospect.base.chi2 - look.fit.chi2 > PROMISING]
+            return [look.fit for look in looks if look.prospect.base.misfit - look.fit.misfit > PROMISING]
         fits = [look.fit for look in looks]
         near = 1.3 * fits[0].ratio if fits else 0.0
         return [
@@ -337,7 +337,7 @@ def explored(data: EvidenceData, nominal: Model, progress: Progress = lambda _: 
 
 def _deserves_sharpening(fit: Fit, best: Fit) -> bool:
     """Whether the cost of a fit is rough, and it comes near the best without being its equal."""
-    return is_rough(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.chi2
+    return is_rough(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.misfit
 
 
 def _best_looks(looks: list[Look]) -> list[Look]:

@@ -7,14 +7,14 @@ smooth one, which is less up to d = 8 s.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData
-from pierburg_ros.diagnosis.explanation import Variant
-from pierburg_ros.diagnosis.search import Fit
 from pierburg_ros.effects import EFFECT
+
+Signal = NDArray[np.float64]
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured."""
@@ -22,15 +22,27 @@ OFF_GRID = 0.02
 """Distance from the grid, in steps, that rounding of the file format may cause."""
 
 
-def coarse_step(data: EvidenceData) -> float:
+def coarse_step(measured: Sequence[Signal], noise: float) -> float:
     """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0."""
-    step = min(_grid(run.measured) for run in data.runs)
-    noise = np.sqrt(max(data.noise**2 - step**2 / 12.0, 0.0))
+    step = min(_grid(values) for values in measured)
+    unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
     plausible = EFFECT["sensor_quantization"].parameter("step").plausible[0]
-    return step if step >= plausible and step > COARSE * noise else 0.0
+    return step if step >= plausible and step > COARSE * unrounded else 0.0
 
 
-def _grid(measured: np.ndarray) -> float:
+def counted(residual: Signal, half_step: float) -> float:
+    """Sum of squares of a residual, shape (samples,), in which half a step of the converter is no evidence.
+
+    Where the shaft rests in a step decides about an error up to half of it: that counts as its mean square over all
+    places, a third of half a step squared. Only what is beyond counts as it is. `half_step` is 0 for fine steps.
+    """
+    if half_step == 0.0:
+        return float(residual @ residual)
+    beyond = np.maximum(np.abs(residual) - half_step, 0.0)
+    return float(beyond @ beyond) + residual.size * half_step**2 / 3.0
+
+
+def _grid(measured: Signal) -> float:
     """Smallest step between values if all are whole steps apart, otherwise 0."""
     values = np.unique(measured)
     if values.size < 3:
@@ -40,14 +52,3 @@ def _grid(measured: np.ndarray) -> float:
     step *= float(apart[-1]) / max(round(float(apart[-1])), 1)
     apart = (values - values[0]) / step
     return step if np.max(np.abs(apart - np.round(apart))) < OFF_GRID else 0.0
-
-
-def rounded(fit: Fit, step: float) -> Fit:
-    """`fit` with its model's samples rounded to `step`; what it leaves is that of the smooth one."""
-    variant = Variant("sensor_quantization", (), (("step", step),))
-    values = {"sensor_quantization.step": step}
-    switch = fit.switch and replace(fit.switch, model=fit.switch.model.with_values(values))
-    model = fit.model.with_values(values)
-    return replace(
-        fit, explanation=fit.explanation.plus(variant), values={**fit.values, **values}, model=model, switch=switch
-    )

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, Switch
 from pierburg_ros.diagnosis.explanation import AFTER, WHEN, Coordinates, Explanation, Variant
 from pierburg_ros.diagnosis.least_squares import Solution, minimise
+from pierburg_ros.diagnosis.resolution import counted
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 
@@ -23,13 +24,17 @@ REDATED = 4.0
 
 @dataclass(frozen=True)
 class Fit:
-    """An explanation with its best values by dotted name, the model with them, and the one that takes over if any."""
+    """An explanation with its best values by dotted name, the model with them, and the one that takes over if any.
+
+    `half_step` is half a step of the converter over the noise, 0 where steps are fine.
+    """
 
     explanation: Explanation
     values: dict[str, float]
     model: Model
     switch: Switch | None
     solution: Solution
+    half_step: float
 
     @property
     def chi2(self) -> float:
@@ -37,9 +42,14 @@ class Fit:
         return self.solution.cost
 
     @property
+    def misfit(self) -> float:
+        """What of `chi2` is evidence against the explanation: all, unless steps of the converter are coarse."""
+        return counted(self.solution.residual, self.half_step)
+
+    @property
     def ratio(self) -> float:
-        """Training error over the noise."""
-        return float(np.sqrt(self.solution.cost / self.solution.residual.size))
+        """Training error over the noise, as far as it is evidence."""
+        return float(np.sqrt(self.misfit / self.solution.residual.size))
 
 
 def repetition(fit: Fit) -> float:
@@ -70,6 +80,7 @@ class Search:
         self.data = data
         self.nominal = nominal
         self._training = data.training
+        self._half_step = 0.5 * data.step / data.noise
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Training residual of `model` in units of the noise; large where it cannot be simulated."""
@@ -80,10 +91,9 @@ class Search:
         residual = self.residual(*self.models(explanation, values))
         return float(residual @ residual)
 
-    def choosing_chi2(self, fit: Fit) -> float:
-        """Chi2 of a fit on the samples that choose; 0 where there are none."""
-        residual = self._finite(fit.model, fit.switch)[self.data.choosing]
-        return float(residual @ residual)
+    def choosing_misfit(self, fit: Fit) -> float:
+        """What counts as evidence of chi2 on the samples that choose; 0 where there are none."""
+        return counted(self._finite(fit.model, fit.switch)[self.data.choosing], self._half_step)
 
     def _finite(self, model: Model, switch: Switch | None) -> Signal:
         return np.nan_to_num(self.data.residual(model, switch), nan=1e3, posinf=1e3, neginf=-1e3)
@@ -119,7 +129,7 @@ class Search:
         solution = minimise(cost, begin, lower, upper, steps, iterations)
         values = coordinates.values(solution.point)
         model, switch = self.models(explanation, values)
-        return Fit(explanation, {**model.values, **values}, model, switch, solution)
+        return Fit(explanation, {**model.values, **values}, model, switch, solution, self._half_step)
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which an explanation is searched."""

@@ -31,7 +31,7 @@ WHITE = 1.5
 
 def gain(smaller: Fit, larger: Fit) -> float:
     """What the larger explanation gains in chi2, counted in effective samples."""
-    return (smaller.chi2 - larger.chi2) / repetition(larger)
+    return (smaller.misfit - larger.misfit) / repetition(larger)
 
 
 def betters(larger: Fit, smaller: Fit, data: EvidenceData) -> bool:
@@ -57,7 +57,7 @@ def complete(fit: Fit) -> bool:
 
 def accounts_for_all(fit: Fit, data: EvidenceData) -> bool:
     """Whether an explanation with an effect leaves white noise, and beyond it no more than simulators may differ by."""
-    small = bool(fit.explanation.variants) and fit.chi2 < fit.solution.residual.size + allowance(fit, data)
+    small = bool(fit.explanation.variants) and fit.misfit < fit.solution.residual.size + allowance(fit, data)
     return small and repetition(fit) < WHITE
 
 
@@ -66,7 +66,7 @@ def overlooks(fit: Fit, search: Search) -> bool:
     if fit.explanation.variants or not adequate(fit):
         return False
     samples = int(np.count_nonzero(search.data.choosing))
-    return search.choosing_chi2(fit) > samples * (EXPLAINED * fit.ratio) ** 2
+    return search.choosing_misfit(fit) > samples * (EXPLAINED * fit.ratio) ** 2
 
 
 def allowance(fit: Fit, data: EvidenceData) -> float:
@@ -78,7 +78,7 @@ def allowance(fit: Fit, data: EvidenceData) -> float:
 
 def alike(best: Fit) -> float:
     """Chi2 up to which a fit is not told apart from `best` by the training samples."""
-    return best.chi2 + TIED * repetition(best)
+    return best.misfit + TIED * repetition(best)
 
 
 def tied(best: Fit, among: Iterable[Fit], search: Search) -> list[Fit]:
@@ -87,8 +87,8 @@ def tied(best: Fit, among: Iterable[Fit], search: Search) -> list[Fit]:
     They fit the training samples alike; one that fails on the choosing samples, where another does not, is out.
     """
     limit = alike(best)
-    fits = [fit for fit in among if fit.chi2 <= limit]
-    errors = [search.choosing_chi2(fit) for fit in fits]
+    fits = [fit for fit in among if fit.misfit <= limit]
+    errors = [search.choosing_misfit(fit) for fit in fits]
     lowest = min(errors, default=0.0)
     worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))
     return [fit for fit, chi2 in zip(fits, errors, strict=True) if chi2 <= worst]

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from recordings import NOMINAL, PIERBURG, recording
 
-from pierburg_ros.diagnosis.evidence_data import evidence_of
+from pierburg_ros.diagnosis.conclusion import rounded
+from pierburg_ros.diagnosis.evidence_data import EvidenceData, evidence_of
 from pierburg_ros.diagnosis.explanation import Explanation
-from pierburg_ros.diagnosis.resolution import coarse_step, rounded
+from pierburg_ros.diagnosis.resolution import counted
 from pierburg_ros.diagnosis.search import Search
+from pierburg_ros.diagnosis.significance import ADEQUATE, EXPLAINED
 
 
-def stepped(step: float, noise: float):
+def stepped(step: float, noise: float) -> EvidenceData:
     """A nominal recording with noise, rounded to multiples of `step`."""
     given = recording({}, duration=20.0)
     clean = evidence_of([given], PIERBURG).runs[0].simulated(NOMINAL)
@@ -22,12 +24,28 @@ def stepped(step: float, noise: float):
 
 @pytest.mark.parametrize(("step", "noise"), [(0.015, 0.004), (0.02, 0.002), (0.05, 0.001)])
 def test_coarse_steps_are_seen(step: float, noise: float) -> None:
-    assert coarse_step(stepped(step, noise)) == pytest.approx(step, rel=1e-6)
+    assert stepped(step, noise).step == pytest.approx(step, rel=1e-6)
 
 
 @pytest.mark.parametrize(("step", "noise"), [(0.00122, 0.001), (0.00122, 0.004), (0.005, 0.004), (1e-6, 0.002)])
 def test_steps_that_noise_hides_are_not(step: float, noise: float) -> None:
-    assert coarse_step(stepped(step, noise)) == 0.0
+    assert stepped(step, noise).step == 0.0
+
+
+def test_where_in_a_step_the_shaft_rests_is_no_evidence() -> None:
+    everywhere = np.linspace(-0.5, 0.5, 10_001)
+    assert counted(everywhere, 0.5) == pytest.approx(everywhere @ everywhere, rel=1e-3)
+    for place in (0.0, 0.3, -0.5):
+        assert counted(np.full(10_001, place), 0.5) == pytest.approx(counted(everywhere, 0.5))
+    assert counted(np.full(12, 0.7), 0.5) == pytest.approx(12 * (0.2**2 + 1 / 12))
+    assert counted(everywhere, 0.0) == pytest.approx(everywhere @ everywhere)
+
+
+def test_a_valve_that_rests_off_the_middle_of_steps_is_still_explained() -> None:
+    data = stepped(0.045, 0.001)
+    fit = Search(data, NOMINAL).fit(Explanation())
+    assert np.sqrt(fit.chi2 / fit.solution.residual.size) > EXPLAINED
+    assert fit.ratio < ADEQUATE
 
 
 def test_the_rounded_model_gives_values_on_the_grid() -> None:
