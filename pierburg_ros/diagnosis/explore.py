@@ -170,7 +170,7 @@ class Exploration:
         assert best is not None
         for size in range(1, largest + 1):
             larger = self.best_of_size(size)
-            if larger is not None and betters(larger, best, self.data):
+            if larger is not None and betters(larger, best, self.search):
                 best = larger
         return min(tied(best, self.of_size(best.explanation.size), self.search), key=_preference)
 

@@ -18,6 +18,12 @@ from pierburg_ros.plant import Model
 Signal = NDArray[np.float64]
 Start = Mapping[str, float]
 
+STRIDES = {
+    "amplitude": 5.0, "coefficient": 5.0, "width": 5.0, "torque": 5.0, "time_constant": 5.0, "source_resistance": 5.0,
+    "delay": 2.0, "gap": 2.0,
+}  # fmt: skip
+"""Strengths that a linear step scales, and the largest factor: events jump with delays and gaps, and what is right for
+a small one says little about a large one. Their starts lie close enough."""
 REDATED = 4.0
 """How far around its first estimate the moment of a change is looked for again [s]."""
 
@@ -288,18 +294,8 @@ def _scaled(model: Model, variant: Variant, used: list[dict[str, float]], scale:
         values[name] = used[0][name] * float(np.hypot(*scale))
         values[f"{variant.effect}.phase"] = float(np.arctan2(scale[1], scale[0]))
         return values
-    factor = float(np.clip(scale[0], 0.2, 5.0))
-    for name in (
-        "amplitude",
-        "coefficient",
-        "delay",
-        "width",
-        "torque",
-        "gap",
-        "time_constant",
-        "source_resistance",
-    ):
+    for name, most in STRIDES.items():
         dotted = f"{variant.effect}.{name}"
         if dotted in used[0] and variant.effect != "position_dependent_friction":
-            values[dotted] = used[0][dotted] * factor
+            values[dotted] = used[0][dotted] * float(np.clip(scale[0], 1.0 / most, most))
     return values

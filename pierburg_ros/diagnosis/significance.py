@@ -14,8 +14,8 @@ SIGNIFICANT = 60.0
 TIED = 12.0
 """Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
 REFUTED = 1.1
-"""Error on the choosing samples, over the least of explanations that fit the training samples alike, from which one is
-out."""
+"""Error on the choosing samples, over that of an explanation that fits the training samples alike or is smaller, from
+which one is out."""
 FORMULATION = 1.15e-4
 """What simulations of one effect may differ by [rad, root mean square], each right in its own way: 0.3 mV of Hall
 voltage, the most that going from steps of 10 us to 5 changes for any effect in the textbook form (`docs/proof.md`)."""
@@ -34,10 +34,15 @@ def gain(smaller: Fit, larger: Fit) -> float:
     return (smaller.misfit - larger.misfit) / repetition(larger)
 
 
-def betters(larger: Fit, smaller: Fit, data: EvidenceData) -> bool:
-    """Whether a larger explanation gains more than chance and the difference of simulators can give it."""
+def betters(larger: Fit, smaller: Fit, search: Search) -> bool:
+    """Whether a larger explanation gains more than chance and the difference of simulators can give it.
+
+    One that fails on the choosing samples, where the smaller does not, has only been bent to what trains.
+    """
     more = larger.explanation.size - smaller.explanation.size
-    return gain(smaller, larger) > SIGNIFICANT * more + allowance(smaller, data) / repetition(larger)
+    if gain(smaller, larger) <= SIGNIFICANT * more + allowance(smaller, search.data) / repetition(larger):
+        return False
+    return search.choosing_misfit(larger) <= _highest(search.choosing_misfit(smaller), larger)
 
 
 def white(fit: Fit) -> bool:
@@ -89,6 +94,10 @@ def tied(best: Fit, among: Iterable[Fit], search: Search) -> list[Fit]:
     limit = alike(best)
     fits = [fit for fit in among if fit.misfit <= limit]
     errors = [search.choosing_misfit(fit) for fit in fits]
-    lowest = min(errors, default=0.0)
-    worst = max(REFUTED**2 * lowest, lowest + SIGNIFICANT * repetition(best))
-    return [fit for fit, chi2 in zip(fits, errors, strict=True) if chi2 <= worst]
+    highest = _highest(min(errors, default=0.0), best)
+    return [fit for fit, error in zip(fits, errors, strict=True) if error <= highest]
+
+
+def _highest(least: float, fit: Fit) -> float:
+    """Misfit on the choosing samples from which a fit is out where another has the `least`."""
+    return max(REFUTED**2 * least, least + SIGNIFICANT * repetition(fit))

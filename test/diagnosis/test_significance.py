@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from recordings import NOMINAL, PIERBURG, recording
 
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, evidence_of
+from pierburg_ros.diagnosis.evidence_data import evidence_of
 from pierburg_ros.diagnosis.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search import Fit, Search
 from pierburg_ros.diagnosis.significance import (
@@ -22,33 +22,41 @@ LAG = Variant("sensor_lag", ("time_constant",))
 TRUE = {"sensor_lag.time_constant": 0.012}
 
 
-def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[EvidenceData, list[Fit]]:
+def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[Search, list[Fit]]:
     """Fits to a recording of the nominal valve with `changes`."""
-    data = evidence_of([recording({**TRUE, **changes})], PIERBURG)
-    return data, [Search(data, NOMINAL).fit(explanation, TRUE) for explanation in explanations]
+    search = Search(evidence_of([recording({**TRUE, **changes})], PIERBURG), NOMINAL)
+    return search, [search.fit(explanation, TRUE) for explanation in explanations]
 
 
 def test_what_simulators_differ_by_is_a_third_of_a_millivolt() -> None:
-    data, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
+    search, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
     samples = lag.solution.residual.size
-    assert allowance(lag, data) == pytest.approx(samples * (0.0003 / data.noise) ** 2, rel=0.01)
-    assert allowance(drift, data) == 0.0
+    assert allowance(lag, search.data) == pytest.approx(samples * (0.0003 / search.data.noise) ** 2, rel=0.01)
+    assert allowance(drift, search.data) == 0.0
 
 
 def test_a_drift_too_small_to_be_more_than_that_is_not_named_beside_an_effect() -> None:
     both = Explanation(("spring_preload",), (LAG,))
-    data, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
+    search, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
     assert gain(lag, larger) > SIGNIFICANT
-    assert accounts_for_all(lag, data)
-    assert not betters(larger, lag, data)
+    assert accounts_for_all(lag, search.data)
+    assert not betters(larger, lag, search)
 
 
 def test_a_plain_drift_beside_an_effect_betters_it() -> None:
     both = Explanation(("spring_preload",), (LAG,))
-    data, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
-    assert not accounts_for_all(lag, data)
-    assert accounts_for_all(larger, data)
-    assert betters(larger, lag, data)
+    search, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
+    assert not accounts_for_all(lag, search.data)
+    assert accounts_for_all(larger, search.data)
+    assert betters(larger, lag, search)
+
+
+def test_what_is_bent_to_the_training_samples_betters_nothing() -> None:
+    both = Explanation(("spring_preload",), (LAG,))
+    search, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
+    elsewhere = replace(larger, model=larger.model.with_values({"spring_preload": 0.32}))
+    assert gain(lag, elsewhere) == gain(lag, larger)
+    assert not betters(elsewhere, lag, search)
 
 
 def test_white_noise_larger_than_estimated_is_all_there_is_and_structure_is_not() -> None:
