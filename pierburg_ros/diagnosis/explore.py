@@ -35,7 +35,8 @@ Progress = Callable[[str], None]
 NEAR = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early."""
 RIVALS = 3
-"""Explanations of one size that are grown while none is adequate, besides every single drift."""
+"""Explanations of one size that may better a smaller one, and that are grown while none is adequate, besides every
+single drift."""
 GLANCE = 24.0
 """How much of a recording [s] a first look takes in."""
 BRIEF, FULL = 6, 25
@@ -169,9 +170,8 @@ class Exploration:
         best = self.best_of_size(0)
         assert best is not None
         for size in range(1, largest + 1):
-            larger = self.best_of_size(size)
-            if larger is not None and betters(larger, best, self.search):
-                best = larger
+            larger = sorted(self.of_size(size), key=lambda fit: fit.chi2)[:RIVALS]
+            best = next((fit for fit in larger if betters(fit, best, self.search)), best)
         return min(tied(best, self.of_size(best.explanation.size), self.search), key=_preference)
 
     def best_of_size(self, size: int) -> Fit | None:
