@@ -50,6 +50,7 @@ class Known(Search):
     def __init__(self, given: Callable[[float, float], list[float]]) -> None:
         self.nominal = NOMINAL
         self.given = given
+        self._half_step = 0.0
 
     def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()
