@@ -94,6 +94,11 @@ class EvidenceData:
         parts = [run.measured - run.simulated(model, switch) for run in self.runs]
         return np.concatenate(parts) / self.noise
 
+    @property
+    def half_step(self) -> float:
+        """Half a step of the converter in units of the noise, 0 where steps are fine."""
+        return 0.5 * self.step / self.noise
+
     def cut(self, duration: float) -> EvidenceData:
         """The first `duration` [s] of each run."""
         return replace(self, runs=tuple(run.cut(duration) for run in self.runs))

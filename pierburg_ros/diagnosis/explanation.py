@@ -18,9 +18,10 @@ DRIFT = math.log(6.0)
 """A base parameter may drift by up to this factor (logarithm) either way."""
 ABOVE = {"static_friction.breakaway_torque": "coulomb_friction"}
 """Parameters that a search moves by what they exceed another one."""
-RHYTHMS = ("cogging_torque.periods_per_motor_revolution", "external_load.frequency")
+TEETH = "cogging_torque.periods_per_motor_revolution"
+RHYTHMS = (TEETH, "external_load.frequency")
 """Parameters that are known as finely as the recording is long, and move in small steps."""
-LEAST = {RHYTHMS[0]: 0.9, RHYTHMS[1]: 0.02, "nonlinear_spring.knee_angle": 0.1}
+LEAST = {TEETH: 0.9, "external_load.frequency": 0.02, "nonlinear_spring.knee_angle": 0.1}
 """Lowest values that are looked for: a slower rhythm is a constant torque, an earlier knee a stiffer spring."""
 LOGARITHMIC = {
     "presliding.stiffness", "presliding.damping", "gear_compliance.stiffness", "gear_compliance.damping",

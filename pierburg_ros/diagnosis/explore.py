@@ -115,10 +115,11 @@ class Exploration:
         best = self.preferred(size)
         if accounts_for_all(best, self.data):
             return
-        self._try_cogging(self._promising(best))
+        seeds = self._promising(best)
+        self._try_cogging(seeds)
         if self._complete(size + 1):
             return
-        for seed in self._promising(best):
+        for seed in seeds:
             self.grow(seed)
             if not self._complete(size + 1):
                 self.sharpen(self.of_size(size + 1))

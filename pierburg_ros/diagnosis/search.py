@@ -19,8 +19,10 @@ Signal = NDArray[np.float64]
 Start = Mapping[str, float]
 
 STRIDES = {
-    "amplitude": 5.0, "coefficient": 5.0, "width": 5.0, "torque": 5.0, "time_constant": 5.0, "source_resistance": 5.0,
-    "delay": 2.0, "gap": 2.0,
+    "pwm_deadband.width": 5.0, "supply_sag.source_resistance": 5.0, "cogging_torque.amplitude": 5.0,
+    "external_load.torque": 5.0, "external_load.amplitude": 5.0, "viscous_friction.coefficient": 5.0,
+    "load_dependent_friction.coefficient": 5.0, "sensor_hysteresis.width": 5.0, "sensor_lag.time_constant": 5.0,
+    "sensor_nonlinearity.amplitude": 5.0, "input_delay.delay": 2.0, "backlash.gap": 2.0,
 }  # fmt: skip
 """Strengths that a linear step scales, and the largest factor: events jump with delays and gaps, and what is right for
 a small one says little about a large one. Their starts lie close enough."""
@@ -86,7 +88,6 @@ class Search:
         self.data = data
         self.nominal = nominal
         self._training = data.training
-        self._half_step = 0.5 * data.step / data.noise
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Training residual of `model` in units of the noise; large where it cannot be simulated."""
@@ -99,7 +100,7 @@ class Search:
 
     def choosing_misfit(self, fit: Fit) -> float:
         """What counts as evidence of chi2 on the samples that choose; 0 where there are none."""
-        return counted(self._finite(fit.model, fit.switch)[self.data.choosing], self._half_step)
+        return counted(self._finite(fit.model, fit.switch)[self.data.choosing], self.data.half_step)
 
     def _finite(self, model: Model, switch: Switch | None) -> Signal:
         return np.nan_to_num(self.data.residual(model, switch), nan=1e3, posinf=1e3, neginf=-1e3)
@@ -135,7 +136,7 @@ class Search:
         solution = minimise(cost, begin, lower, upper, steps, iterations)
         values = coordinates.values(solution.point)
         model, switch = self.models(explanation, values)
-        return Fit(explanation, {**model.values, **values}, model, switch, solution, self._half_step)
+        return Fit(explanation, {**model.values, **values}, model, switch, solution, self.data.half_step)
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which an explanation is searched."""
@@ -294,8 +295,6 @@ def _scaled(model: Model, variant: Variant, used: list[dict[str, float]], scale:
         values[name] = used[0][name] * float(np.hypot(*scale))
         values[f"{variant.effect}.phase"] = float(np.arctan2(scale[1], scale[0]))
         return values
-    for name, most in STRIDES.items():
-        dotted = f"{variant.effect}.{name}"
-        if dotted in used[0] and variant.effect != "position_dependent_friction":
-            values[dotted] = used[0][dotted] * float(np.clip(scale[0], 1.0 / most, most))
+    for name in used[0].keys() & STRIDES.keys():
+        values[name] = used[0][name] * float(np.clip(scale[0], 1.0 / STRIDES[name], STRIDES[name]))
     return values

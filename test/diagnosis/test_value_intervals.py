@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from recordings import NOMINAL
 
+from pierburg_ros.diagnosis.evidence_data import EvidenceData
 from pierburg_ros.diagnosis.explanation import Explanation
 from pierburg_ros.diagnosis.search import Search
 from pierburg_ros.diagnosis.uncertainty import SURE, estimates
@@ -50,7 +51,7 @@ class Known(Search):
     def __init__(self, given: Callable[[float, float], list[float]]) -> None:
         self.nominal = NOMINAL
         self.given = given
-        self._half_step = 0.0
+        self.data = EvidenceData(NOMINAL.actuator, (), noise=1.0)
 
     def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()
