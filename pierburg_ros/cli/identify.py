@@ -27,6 +27,7 @@ from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.identify import identify as identify_recordings
 from pierburg_ros.identification.residual import Comparison
 from pierburg_ros.identification.residual_plot import write_picture
+from pierburg_ros.identification.start import from_standstill
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 
@@ -59,7 +60,8 @@ def identify(
             " run.mcap --output DIR."
         )
     start = starting_model(model, actuator)
-    measured = [read_recording(path, time=time, topics=topics_of(topic)) for path in recordings]
+    read = (read_recording(path, time=time, topics=topics_of(topic)) for path in recordings)
+    measured = [from_standstill(recording, start) for recording in read]
     with output_folder(output) as folder:
         with Console(stderr=True).status("fitting whole recordings"):
             found = identify_recordings(start, measured, free or (), fix or ())

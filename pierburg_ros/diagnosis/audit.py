@@ -15,6 +15,7 @@ from pierburg_ros.diagnosis.evidence_data import Run
 from pierburg_ros.diagnosis.motion import Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
+from pierburg_ros.identification.start import Start
 from pierburg_ros.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -22,6 +23,7 @@ Kind = Literal[
     "no_movement",
     "constant_duty",
     "saturated",
+    "begins_moving",
     "short",
     "slow_sampling",
     "gaps",
@@ -54,6 +56,7 @@ RECORD: dict[Kind, str] = {
     "no_movement": "Record again with duty steps large enough to move the shaft both ways.",
     "constant_duty": "Record again with duty steps of several sizes.",
     "saturated": "Record again with duty steps well within the limits, up and down.",
+    "begins_moving": "Start recording before the shaft moves.",
     "short": "Record a minute, with movements in both directions.",
     "slow_sampling": "Record at 500 Hz.",
     "gaps": "Record on an idle machine, or with the recorder's queue made longer.",
@@ -113,7 +116,12 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQ
 def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Limit]:
     """Everything that keeps these runs from telling more, the gravest first."""
     motions = [motion_of(run, actuator, noise) for run in runs]
-    return [*_limits_of_movement(motions, runs, noise), *_limits_of_sampling(runs), *_limits_of_reach(motions)]
+    return [
+        *_limits_of_movement(motions, runs, noise),
+        *_limits_of_start(runs),
+        *_limits_of_sampling(runs),
+        *_limits_of_reach(motions),
+    ]
 
 
 def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: float) -> list[Limit]:
@@ -146,6 +154,28 @@ def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: f
                 f"The duty is at its limit for {100 * full:.0f} % of the time: what the shaft does at smaller"
                 " torques, and with it friction and spring, is not in the recording.",
                 decisive=True,
+            )
+        )
+    return limits
+
+
+def _limits_of_start(runs: Sequence[Run]) -> list[Limit]:
+    limits = []
+    late = [run.time[0] for run in runs if run.time[0] > 0.0]
+    if late:
+        limits.append(
+            Limit(
+                "begins_moving",
+                f"The shaft moves when recording begins: the first {max(late):.2f} s, up to its first standstill, are"
+                " left out, for how fast it moved there cannot be told well enough.",
+            )
+        )
+    if any(run.initial_velocity != 0.0 and not Start.of(run.time, run.measured).known for run in runs):
+        limits.append(
+            Limit(
+                "begins_moving",
+                "The shaft moves when recording begins and does not stand still soon: an error of the velocity"
+                " there passes for missing physics.",
             )
         )
     return limits

@@ -7,14 +7,13 @@ import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 
-from pierburg_ros.diagnosis.explanation import Explanation
-from pierburg_ros.diagnosis.hypotheses import COGGING, TIMED, Start, turns
-from pierburg_ros.diagnosis.restarts import restarted
+from pierburg_ros.diagnosis.explanation import TEETH, Explanation
+from pierburg_ros.diagnosis.hypotheses import COGGING, Start, turns
+from pierburg_ros.diagnosis.restarts import REMEMBERED, restarted
 from pierburg_ros.diagnosis.search import Fit, Search
 from pierburg_ros.diagnosis.torque_residual import missing_torque
 
 NAMES = tuple(f"{COGGING.effect}.{name}" for name in COGGING.free)
-TEETH = f"{COGGING.effect}.periods_per_motor_revolution"
 LENGTHS = (1.0, 2.0, 4.0)
 """Lengths of the stretches [s] that are fitted in turn, before whole recordings."""
 AMPLITUDES = (0.012, 0.025)
@@ -36,8 +35,8 @@ def through_stretches(search: Search, bases: Mapping[Explanation, Fit], pool: Ex
     recording ends where one such moment is wrong. Stretches start from the measured state, and lengthen (multiple
     shooting; Voss, Timmer and Kurths, Nonlinear dynamical system identification from uncertain and indirect
     measurements, Int. J. Bifurcation and Chaos 14, 2004). The number of teeth is held at whole ones near the rhythms of
-    the missing torque, for it trades against the phase; the last fit sets it free. What goes by the clock or changes in
-    the middle cannot start afresh, and is left out; where cogging explains little, the list is empty.
+    the missing torque, for it trades against the phase; the last fit sets it free. Heat and what changes in the middle
+    cannot start afresh, and are left out; where cogging explains little, the list is empty.
     """
     grown = [(explanation, base) for explanation, base in bases.items() if _restartable(explanation)]
     if not grown:
@@ -60,7 +59,7 @@ def through_stretches(search: Search, bases: Mapping[Explanation, Fit], pool: Ex
 
 
 def _restartable(explanation: Explanation) -> bool:
-    return explanation.changed is None and TIMED.isdisjoint(explanation.effects)
+    return explanation.changed is None and REMEMBERED.isdisjoint(explanation.effects)
 
 
 def _scanned(search: Search, short: Search, explanation: Explanation, base: Fit, pool: Executor) -> Start:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.resolution import coarse_step
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.resimulation import Start, inputs_of
+from pierburg_ros.identification.resimulation import inputs_in_force
+from pierburg_ros.identification.start import Start, from_standstill
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -143,9 +144,10 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
             )
     nominal = Model.nominal(actuator)
     runs = []
-    for recording in recordings:
-        angle, velocity = Start.of(recording).state(nominal, recording.quantity)
-        inputs, time = inputs_of(recording), recording.time
+    for given in recordings:
+        recording = from_standstill(given, nominal)
+        angle, velocity = Start.of(recording.time, recording.measured).state(nominal, recording.quantity)
+        inputs, time = inputs_in_force(recording, actuator), recording.time
         parts = training_blocks(time), choosing_blocks(time)
         runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, *parts))
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))

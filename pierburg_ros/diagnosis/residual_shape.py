@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, held_back, rms
-from pierburg_ros.diagnosis.hypotheses import TIMED
 from pierburg_ros.diagnosis.least_squares import minimise
 from pierburg_ros.diagnosis.motion import motion_of
-from pierburg_ros.diagnosis.restarts import restarted
+from pierburg_ros.diagnosis.restarts import REMEMBERED, restarted
 from pierburg_ros.diagnosis.torque_residual import missing_torque
 from pierburg_ros.plant import Model
 
@@ -111,7 +110,7 @@ def _fitted(data: EvidenceData, base: Model) -> Model:
     the measured state, so that a slip at the wrong moment is forgotten after a second. Large errors count by their
     logarithm. A prior keeps the shape small and smooth.
     """
-    stretches = data if TIMED.intersection(base.active_effects) else restarted(data, STRETCH)
+    stretches = data if REMEMBERED.intersection(base.active_effects) else restarted(data, STRETCH)
     training = stretches.training
     angle, velocity = nodes(data)
     prior = WEIGHT * _prior(angle.size, velocity.size)

@@ -13,12 +13,14 @@ SETTLED = 5
 """Samples to either side of a restart over which the angle is averaged while the shaft stands still."""
 FEWEST = 5
 """A stretch has at least so many samples."""
+REMEMBERED = frozenset({"thermal_resistance"})
+"""Effects with a memory longer than any stretch: none shows them."""
 
 
 def restarted(data: EvidenceData, length: float) -> EvidenceData:
     """`data` with every run cut into stretches of `length` [s], each starting at the measured angle and velocity.
 
-    Whatever else a model remembers (heat, play, bristles, the time of a load) starts afresh in each.
+    Loads keep to the time of the recording; whatever else a model remembers (heat, play, bristles) starts afresh.
     """
     runs = tuple(
         stretch for run in data.runs for stretch in _stretches(run, motion_of(run, data.actuator, data.noise), length)

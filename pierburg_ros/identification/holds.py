@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.identification.resimulation import scale_of
+from pierburg_ros.identification.start import scale_of
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of

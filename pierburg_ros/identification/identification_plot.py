@@ -79,7 +79,7 @@ def write_page(path: Path, found: Identification, recordings: list[Recording]) -
     )
     start = 0.0
     for recording, residual in zip(recordings, found.fitted.residuals, strict=True):
-        time = start + recording.time
+        time = start + recording.time - recording.time[0]
         for name, values, row in (
             ("measured", recording.measured, 1),
             ("simulated", recording.measured - residual, 1),

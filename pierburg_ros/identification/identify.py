@@ -140,7 +140,7 @@ def validation_rmse(start: Model, recordings: Sequence[Recording], names: Sequen
         seen, unseen, first = recordings[:-1], recordings[-1], 0
     else:
         unseen = recordings[0]
-        end = TRAINED_SHARE * unseen.duration
+        end = unseen.time[0] + TRAINED_SHARE * unseen.duration
         seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
     fitted = fit(start, seen, names, starts=1)
     residual = (unseen.measured - resimulate(fitted.model, unseen))[first:]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.resimulation import resimulate
+from pierburg_ros.identification.start import from_standstill
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -101,7 +102,8 @@ class Comparison:
 
 
 def compare(model: Model, recording: Recording) -> Comparison:
-    """`recording` beside the answer of `model` to its inputs, from where the first samples saw the shaft."""
+    """`recording` beside the answer of `model` to its inputs, from where the shaft is first seen at rest."""
+    recording = from_standstill(recording, Model.nominal(model.actuator))
     simulated = resimulate(model, recording)
     lost = np.flatnonzero(~np.isfinite(simulated))
     if lost.size:

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
+from pierburg_ros.identification.start import Start, scale_of
 from pierburg_ros.plant import Inputs, Model, simulate_many
-from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]
-RIGHT_ANGLE = math.pi / 2
-LONGEST_START = 250
-"""Most samples at the start of a recording that say where the shaft stood."""
 
 
 def inputs_of(recording: Recording) -> Inputs:
@@ -35,54 +30,15 @@ def inputs_of(recording: Recording) -> Inputs:
     return Inputs(times, duty, supply, enabled)
 
 
-@dataclass(frozen=True)
-class Start:
-    """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit."""
+def inputs_in_force(recording: Recording, actuator: Actuator) -> Inputs:
+    """`inputs_of` a recording of a running `actuator`.
 
-    level: float
-    rate: float
-    noise: float
-
-    @staticmethod
-    def of(recording: Recording) -> Start:
-        """Mean of the samples before the first movement, or a line where the shaft moves at once."""
-        measured, noise = recording.measured, noise_of(recording.time, recording.measured)
-        still = np.abs(measured[:LONGEST_START] - np.median(measured[:5])) <= 5.0 * noise + 1e-12
-        length = int(np.argmin(still)) if not still.all() else still.size
-        if length >= 10:
-            return Start(float(np.mean(measured[:length])), 0.0, noise)
-        few = min(8, measured.size)
-        rate, level = np.polyfit(recording.time[:few], measured[:few], 1)
-        return Start(float(level), float(rate), noise)
-
-    def state(self, model: Model, quantity: str) -> tuple[float, float]:
-        """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
-        closed, per_radian = scale_of(model, quantity)
-        angle = _unbent(model, (self.level - closed) / per_radian)
-        margin = 3.0 * self.noise / abs(per_radian)
-        lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
-        if angle <= lower + margin:
-            return lower, 0.0
-        if angle >= upper - margin:
-            return upper, 0.0
-        return angle, self.rate / per_radian
-
-
-def scale_of(model: Model, quantity: str) -> tuple[float, float]:
-    """Measured value at angle 0 and its change per rad, for a recorded `quantity`."""
-    if quantity == "position":
-        return 0.0, 1.0
-    closed, opened = model.values["hall_voltage_closed"], model.values["hall_voltage_open"]
-    return closed, (opened - closed) / RIGHT_ANGLE
-
-
-def _unbent(model: Model, indicated: float) -> float:
-    """Angle [rad] that a bent sensor characteristic shows as `indicated` [rad]."""
-    amplitude, waves = (model.values[f"sensor_nonlinearity.{name}"] for name in ("amplitude", "half_waves"))
-    angle = indicated
-    for _ in range(20 if amplitude else 0):
-        angle = indicated - RIGHT_ANGLE * amplitude * math.sin(2.0 * waves * angle)
-    return angle
+    Away from the closed stop only a duty holds the shaft against its spring: there the first one has been in force
+    before the recording began.
+    """
+    inputs, start = inputs_of(recording), Start.of(recording.time, recording.measured)
+    angle, _ = start.state(Model.nominal(actuator), recording.quantity)
+    return inputs.held_before() if angle > actuator.lower_stop else inputs
 
 
 class Resimulation:
@@ -95,8 +51,8 @@ class Resimulation:
                 " expected a recorded position. Choose another --actuator."
             )
         self.recording = recording
-        self.inputs = inputs_of(recording)
-        self.start = Start.of(recording)
+        self.inputs = inputs_in_force(recording, actuator)
+        self.start = Start.of(recording.time, recording.measured)
         self._decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
         self._nominal_scale = scale_of(Model.nominal(actuator), actuator.quantity)
 

@@ -10,6 +10,8 @@ from pierburg_ros.plant.state import QUEUE
 
 LONGEST = 0.002
 """Longest stretch [s] over which the winding keeps its resistance, and the shaft its velocity for the sensor's lag."""
+FORGOTTEN = 20.0
+"""Time constants of the winding after which its current has forgotten the duty before, to rounding."""
 EVENTS = 20_000
 """More events than this in one interval mean that a parameter set cannot be simulated."""
 
@@ -26,6 +28,32 @@ def advance(p, s, duty, supply_voltage, closed_bridge, duration):
         s.time += duration
     else:
         _proceed(p, s, duty, supply, closed_bridge, duration)
+
+
+@kernel
+def recall(p, s, times, duty, supply_voltage, closed_bridge):
+    """Let what was commanded before the present time of `s` be under way: `duty` since each of `times` [s].
+
+    `supply_voltage` [V] and `closed_bridge` are the present ones. A delayed duty goes on arriving, and behind an
+    inductance those that have arrived have driven their current, at the motor's present velocity.
+    """
+    supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
+    arrived = -1
+    while arrived + 1 < times.size and times[arrived + 1] + p.input_delay.delay <= s.time:
+        arrived += 1
+    remembered = FORGOTTEN * p.armature_inductance.inductance / p.armature_resistance
+    first = arrived
+    while first > 0 and times[first] + p.input_delay.delay > s.time - remembered:
+        first -= 1
+    for index in range(max(first, 0), arrived + 1):
+        until = times[index + 1] + p.input_delay.delay if index < arrived else s.time
+        drive.switch(p, s, duty[index], supply, closed_bridge)
+        if remembered > 0.0:
+            s.current = drive.relaxed_current(p, s, until - times[index] - p.input_delay.delay)
+    if remembered > 0.0:
+        s.current -= s.braking * s.motor_velocity / (p.gear_ratio * p.torque_constant)
+    for sent in range(arrived + 1, times.size):
+        _enqueue(s, times[sent] + p.input_delay.delay, duty[sent])
 
 
 @kernel

@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,10 +15,12 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.sensor import measured, quantised
-from pierburg_ros.plant.signal_path import advance
+from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import new_state
 
 Signal = NDArray[np.float64]
+LONG_BEFORE = 10.0
+"""Time [s] after which neither a delayed duty nor a current is still on its way."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,10 @@ class Inputs:
         if time.size == 0 or not np.all(np.isfinite(time)) or not np.all(np.diff(time) > 0):
             raise InputError("The input times are empty or do not increase; expected increasing times. Sort them.")
 
+    def held_before(self) -> Inputs:
+        """The same, but for a first row that has been in force long before."""
+        return replace(self, time=np.concatenate([self.time[:1] - LONG_BEFORE, self.time[1:]]))
+
 
 def simulate(
     model: Model,
@@ -61,8 +67,9 @@ def simulate(
 ) -> Signal:
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
-    No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s].
-    Not a number from where a parameter set cannot be simulated.
+    No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s]; loads go by
+    the time of the samples, and duty from before the first one is under way. Not a number from where a parameter set
+    cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
@@ -83,7 +90,7 @@ def simulate_switched(
     times = _increasing(sample_times)
     output = np.empty(times.size)
     split = int(np.searchsorted(times, switch_time))
-    state = new_state(model.record(), initial_angle, initial_velocity)
+    state = _begun(model, inputs, times[0], initial_angle, initial_velocity)
     for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
         if last > first:
             _continue_into(output[first:last], part, state, inputs, times[first:last])
@@ -113,14 +120,25 @@ def simulate_many(
 def _run_into(
     output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
 ) -> None:
-    state = new_state(model.record(), initial_angle, initial_velocity)
+    state = _begun(model, inputs, times[0], initial_angle, initial_velocity)
     _continue_into(output, model, state, inputs, times)
 
 
+def _begun(model: Model, inputs: Inputs, time: float, angle: float, velocity: float) -> np.ndarray:
+    """State record, shape (1,), at `time` [s], with the inputs from before it under way."""
+    state = new_state(model.record(), angle, velocity)
+    begin(model.record()[0], state[0], *_channels(inputs), time)
+    return state
+
+
 def _continue_into(output: Signal, model: Model, state: np.ndarray, inputs: Inputs, times: Signal) -> None:
+    run(model.record()[0], state[0], *_channels(inputs), times, output)
+
+
+def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]:
     supply = inputs.supply_voltage if inputs.supply_voltage is not None else _NOTHING
     enabled = inputs.enabled if inputs.enabled is not None else _ALWAYS
-    run(model.record()[0], state[0], inputs.time, inputs.duty, supply, enabled, times, output)
+    return inputs.time, inputs.duty, supply, enabled
 
 
 def _increasing(sample_times: ArrayLike) -> Signal:
@@ -132,6 +150,17 @@ def _increasing(sample_times: ArrayLike) -> Signal:
 
 _NOTHING = np.empty(0)
 _ALWAYS = np.empty(0, dtype=bool)
+
+
+@kernel
+def begin(p, s, input_times, duty, supply_voltage, enabled, time):
+    """Begin at `time` [s], with the inputs from before it under way."""
+    s.time = time
+    earlier = np.searchsorted(input_times, time)
+    if earlier > 0:
+        supply = supply_voltage[earlier - 1] if supply_voltage.size > 0 else np.nan
+        closed = enabled[earlier - 1] if enabled.size > 0 else True
+        recall(p, s, input_times[:earlier], duty[:earlier], supply, closed)
 
 
 @kernel

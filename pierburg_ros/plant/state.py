@@ -30,7 +30,7 @@ PIECE = np.dtype(
 
 STATE = np.dtype(
     [
-        ("time", np.float64),  # s since the first sample
+        ("time", np.float64),  # s, as loads and samples count it
         ("angle", np.float64),  # rad, of the shaft
         ("velocity", np.float64),  # rad/s, of the shaft
         ("direction", np.float64),  # +1 opening, -1 closing, 0 held: of the shaft

@@ -42,7 +42,7 @@ class Channel:
 class Recording:
     """Measured samples of the shaft and the signals that acted on it.
 
-    `time` [s] counts from the first measured sample, shape (samples,); `measured` is Hall voltage [V] or
+    `time` [s] counts from the first sample that was measured, shape (samples,); `measured` is Hall voltage [V] or
     position [rad]. The channels are signed duty [1], supply voltage [V], temperature [degC], bridge enabled
     [0 or 1] and setpoints [rad]; what was recorded before the first sample has a negative time. `time_source`
     says which clock the times come from.
@@ -85,7 +85,7 @@ class Recording:
     @property
     def duration(self) -> float:
         """Time from the first to the last measured sample [s]."""
-        return float(self.time[-1])
+        return float(self.time[-1] - self.time[0])
 
     def select(self, start: float, end: float) -> Recording:
         """The samples within [start, end] [s] and what acts on them; times count from the first of them."""

@@ -5,6 +5,7 @@ import pytest
 from recordings import NOISE, NOMINAL, PIERBURG, recording
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.diagnosis.audit import limits_of
 from pierburg_ros.diagnosis.evidence_data import after_choice, evidence_of, held_back
 from pierburg_ros.errors import InputError
 
@@ -43,3 +44,15 @@ def test_after_the_choice_all_train_but_what_judges() -> None:
     np.testing.assert_array_equal(last.training, ~data.judging)
     np.testing.assert_array_equal(last.judging, data.judging)
     assert not np.any(last.choosing)
+
+
+@pytest.mark.parametrize("begin", [0.64, 1.24, 2.42, 2.78, 3.04, 3.34, 5.72])
+def test_a_recording_may_begin_anywhere(begin: float) -> None:
+    """Of a valve that lags behind an inductance and a delay: at rest on the spring, in motion, pressed open."""
+    true = {"armature_inductance.inductance": 0.01, "input_delay.delay": 0.01}
+    data = evidence_of([recording(true).select(begin, 24.0)], PIERBURG)
+    run = data.runs[0]
+    error = data.residual(NOMINAL.with_values(true))
+    assert np.sqrt(np.mean(error[run.time - run.time[0] < 4.0] ** 2)) < 1.05
+    left_out = [limit for limit in limits_of(data.runs, PIERBURG, data.noise) if limit.kind == "begins_moving"]
+    assert len(left_out) == (run.time[0] > 0.0)

@@ -29,6 +29,12 @@ def test_an_error_is_forgotten_at_the_next_start():
     assert cut < 0.3 * whole
 
 
+def test_loads_keep_to_the_time_of_the_recording():
+    load = {"external_load.torque": 0.15, "external_load.start": 9.0, "external_load.end": 14.0}
+    error = restarted(evidence_of([recording(load)], PIERBURG), 1.0).residual(NOMINAL.with_values(load))
+    assert np.sqrt(np.mean(error**2)) < 1.5
+
+
 def test_a_stretch_that_begins_on_a_stop_begins_exactly_there():
     data = evidence_of([recording({})], PIERBURG)
     starts = np.array([run.initial_angle for run in restarted(data, 0.25).runs])

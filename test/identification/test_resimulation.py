@@ -1,9 +1,8 @@
 """Recorded inputs and starts, as the simulator gets them."""
 
 import numpy as np
-import pytest
 
-from pierburg_ros.identification.resimulation import Start, inputs_of, resimulate
+from pierburg_ros.identification.resimulation import inputs_of, resimulate
 from pierburg_ros.identification.synthetic import synthetic_recording
 from pierburg_ros.recording import Channel, Recording
 
@@ -23,25 +22,6 @@ def test_channels_on_different_times_are_held_until_their_next_value():
     assert inputs.duty.tolist() == [0.0, 0.0, 0.22, 0.22]
     assert inputs.supply_voltage.tolist() == [12.0, 12.0, 12.0, 13.0]
     assert inputs.enabled.tolist() == [True, True, False, False]
-
-
-def test_a_shaft_seen_at_a_stop_starts_exactly_there(nominal):
-    noise = 0.003 * np.random.default_rng(3).standard_normal(2000)
-    start = Start.of(recording(0.4205 + noise))
-    assert start.state(nominal, "hall_voltage") == (0.0, 0.0)
-
-
-def test_a_shaft_held_half_way_starts_at_the_mean_of_its_first_samples(nominal):
-    noise = 0.003 * np.random.default_rng(3).standard_normal(2000)
-    angle, velocity = Start.of(recording(2.47 + noise)).state(nominal, "hall_voltage")
-    assert angle == pytest.approx(np.pi / 4, abs=3e-4)
-    assert velocity == 0.0
-
-
-def test_a_shaft_that_moves_at_once_starts_with_its_velocity(nominal):
-    moving = 2.47 + 2.0 * TIME + 1e-4 * np.random.default_rng(3).standard_normal(2000)
-    _, velocity = Start.of(recording(moving)).state(nominal, "hall_voltage")
-    assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
 
 
 def test_a_recording_without_noise_is_simulated_again_exactly(nominal):

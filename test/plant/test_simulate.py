@@ -46,6 +46,30 @@ def test_rows_before_the_first_sample_are_in_force() -> None:
     assert np.array_equal(early, simulate(NOMINAL, Inputs(np.array([10.0]), np.array([0.3])), time))
 
 
+@pytest.mark.parametrize(
+    ("begin", "values"),
+    (
+        (2.0021, {"input_delay.delay": 0.03}),
+        (1.9921, {"armature_inductance.inductance": 0.02}),
+        (2.0021, {"armature_inductance.inductance": 0.02, "input_delay.delay": 0.013}),
+        (1.9921, {"external_load.torque": 0.2, "external_load.start": 2.3, "external_load.end": 2.8}),
+        (1.9921, {"external_load.amplitude": 0.05, "external_load.frequency": 1.7, "external_load.phase": 0.4}),
+    ),
+)
+def test_a_run_taken_up_in_a_standstill_goes_on_as_the_whole_run(begin: float, values: dict[str, float]) -> None:
+    """The shaft rests against its spring; a duty sent just before is still on its way, or still drives its current."""
+    model = NOMINAL.with_values(values)
+    inputs = Inputs(np.array([0.0, 0.3, 0.7, 1.985, 2.0, 2.6]), np.array([0.0, 0.26, 0.2, 0.19, 0.27, 0.0]))
+    time = np.arange(0.0, 3.5, 0.002)
+    whole = simulate(model, inputs, time)
+    late = time >= begin
+    rest = whole[(time > 1.9) & (time < begin)]
+    assert np.ptp(rest) < 1e-9 and np.ptp(whole[late]) > 0.5
+    angle = (rest[0] - 0.42) / 4.1 * np.pi / 2
+    taken_up = simulate(model, inputs, time[late], angle)
+    assert np.max(np.abs(taken_up - whole[late])) < 1e-4
+
+
 @pytest.mark.parametrize("threads", (1, 2, None))
 def test_many_are_the_single_runs(threads: int | None) -> None:
     time, duty = rich_duty(3.0)

@@ -1,0 +1,142 @@
+"""Where the simulation of a recording starts: from which sample, at which angle, how fast."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
+
+Signal = NDArray[np.float64]
+RIGHT_ANGLE = math.pi / 2
+
+LONGEST = 250
+"""Most samples at the start of a recording that say where the shaft stood."""
+EVEN = 50
+"""Samples that, where they lie on a line, tell the angle to a third of the noise, and how fast the shaft creeps."""
+FEWEST = 10
+"""A shaft that keeps its place for so many samples stands still, though it sets off then."""
+SHORTEST = 8
+"""Samples through which a line goes where the shaft moves at once."""
+LATEST = 0.25
+"""Share of a recording within which a standstill has to come for the simulation to start there."""
+SLOW = 10.0
+"""Span of the samples of a standstill, in units of the noise: creeping is allowed."""
+BRISK = 40.0
+"""Span up to which a line at the start tells the velocity well enough, in units of the noise."""
+CERTAIN = 4.0
+"""So many standard deviations of its own noise make a slope or a bend certain."""
+ROUNDING = 1e-12
+"""What counts as no difference where there is no noise, in the measured unit."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit.
+
+    It is `known` where the shaft stands still or creeps.
+    """
+
+    level: float
+    rate: float
+    noise: float
+    known: bool
+
+    @staticmethod
+    def of(time: Signal, measured: Signal) -> Start:
+        """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once."""
+        noise = noise_of(time, measured)
+        length, even = _stays(measured[:LONGEST], noise), bool(_even(measured[:EVEN], BRISK * noise, noise).any())
+        while length >= 2 * FEWEST and _bent(measured[:length], noise):
+            length //= 2
+        known = even or length >= FEWEST
+        length = min(max(length, EVEN if even else FEWEST if known else SHORTEST), measured.size)
+        elapsed, first = time[:length] - time[0], measured[:length]
+        if known and not _slopes(elapsed, first, noise):
+            return Start(float(np.mean(first)), 0.0, noise, known)
+        rate, level = np.polyfit(elapsed, first, 1)
+        return Start(float(level), float(rate), noise, known)
+
+    def state(self, model: Model, quantity: str) -> tuple[float, float]:
+        """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
+        closed, per_radian = scale_of(model, quantity)
+        angle = _unbent(model, (self.level - closed) / per_radian)
+        margin = 3.0 * self.noise / abs(per_radian)
+        lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
+        if angle <= lower + margin:
+            return lower, 0.0
+        if angle >= upper - margin:
+            return upper, 0.0
+        return angle, self.rate / per_radian
+
+
+def from_standstill(recording: Recording, nominal: Model) -> Recording:
+    """`recording` from where the shaft first stands still, its time unchanged; as it is where its start is known.
+
+    It is as it is, too, where the shaft begins on a stop of the `nominal` actuator, or does not stand still soon. The
+    first samples of a standstill are left out as well: in them the last of the movement hides in the noise.
+    Samples tell badly how fast a shaft moves. A simulation that begins a little off then rests elsewhere until the
+    next stop, for dry friction lets it rest anywhere.
+    """
+    start = Start.of(recording.time, recording.measured)
+    if start.known or start.state(nominal, recording.quantity)[1] == 0.0:
+        return recording
+    still = _even(recording.measured[: int(LATEST * recording.measured.size)], SLOW * start.noise, start.noise)
+    lasting = still[: -EVEN // 2] & still[EVEN // 2 :]
+    if not lasting.any():
+        return recording
+    sample = int(np.argmax(lasting)) + EVEN // 2
+    return replace(recording, time=recording.time[sample:], measured=recording.measured[sample:])
+
+
+def scale_of(model: Model, quantity: str) -> tuple[float, float]:
+    """Measured value at angle 0 and its change per rad, for a recorded `quantity`."""
+    if quantity == "position":
+        return 0.0, 1.0
+    closed, opened = model.values["hall_voltage_closed"], model.values["hall_voltage_open"]
+    return closed, (opened - closed) / RIGHT_ANGLE
+
+
+def _unbent(model: Model, indicated: float) -> float:
+    """Angle [rad] that a bent sensor characteristic shows as `indicated` [rad]."""
+    amplitude, waves = (model.values[f"sensor_nonlinearity.{name}"] for name in ("amplitude", "half_waves"))
+    angle = indicated
+    for _ in range(20 if amplitude else 0):
+        angle = indicated - RIGHT_ANGLE * amplitude * math.sin(2.0 * waves * angle)
+    return angle
+
+
+def _stays(measured: Signal, noise: float) -> int:
+    """How many samples from the first one stay where it is, within five times the noise."""
+    still = np.abs(measured - np.median(measured[:5])) <= 5.0 * noise + ROUNDING
+    return int(np.argmin(still)) if not still.all() else still.size
+
+
+def _slopes(time: Signal, measured: Signal, noise: float) -> bool:
+    """Whether samples certainly rise or fall."""
+    elapsed = time - np.mean(time)
+    return bool(abs(elapsed @ measured) > CERTAIN * noise * np.linalg.norm(elapsed) + ROUNDING)
+
+
+def _bent(windows: Signal, noise: float) -> NDArray[np.bool_]:
+    """Whether successive samples, along the last axis, certainly do not lie on a straight line.
+
+    On a line the middle third has the mean of the outer two, but for the noise of these means.
+    """
+    third = max(windows.shape[-1] // 3, 1)
+    parts = (windows[..., :third], windows[..., third:-third], windows[..., -third:])
+    first, middle, last = (np.mean(part, axis=-1) for part in parts)
+    return np.asarray(np.abs(first + last - 2.0 * middle) > CERTAIN * noise * np.sqrt(6.0 / third) + ROUNDING)
+
+
+def _even(measured: Signal, span: float, noise: float) -> NDArray[np.bool_]:
+    """Whether `EVEN` samples from each one lie on a line and within a `span`."""
+    if measured.size < EVEN:
+        return np.zeros(1, dtype=bool)
+    windows = np.lib.stride_tricks.sliding_window_view(measured, EVEN)
+    return np.asarray((np.ptp(windows, axis=1) <= span + ROUNDING) & ~_bent(windows, noise))
