@@ -14,15 +14,15 @@ from pierburg_ros.diagnosis.search import Fit, Search
 from pierburg_ros.diagnosis.torque_residual import missing_torque
 
 NAMES = tuple(f"{COGGING.effect}.{name}" for name in COGGING.free)
-LENGTHS = (1.0, 2.0, 4.0)
+LENGTHS = (0.5, 1.0, 2.0, 4.0)
 """Lengths of the stretches [s] that are fitted in turn, before whole recordings."""
-AMPLITUDES = (0.012, 0.025)
+AMPLITUDES = (0.006, 0.012, 0.025)
 """Amplitudes [N.m] from which a descent may start."""
 PHASES = tuple(math.pi / 4 * number for number in range(8))
 """Phases [rad] from which it may."""
 BRIEF = 8
 """Iterations of a descent through stretches of one length."""
-SHOWN = 0.5
+SHOWN = 0.75
 """Error over the shortest stretches, over that without cogging, from which cogging is not followed up."""
 FOLLOWED = 2
 """How many explanations are."""

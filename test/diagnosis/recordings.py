@@ -3,12 +3,25 @@
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.closed_loop import simulate_laps
+from pierburg_ros.control import Settings
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 
 PIERBURG = read_actuator("pierburg")
 NOMINAL = Model.nominal(PIERBURG)
 NOISE = 0.003
+MODEST = Settings().with_values(
+    {
+        "pi_output_support": 1.2,
+        "integral_gain": 0.8,
+        "positive": 0.5,
+        "negative": -0.5,
+        "duty_minimum": -0.35,
+        "duty_maximum": 0.65,
+    }
+)
+"""A controller with less duty than the package's own, so that the shaft rests between setpoints."""
 
 
 def recording(
@@ -21,6 +34,15 @@ def recording(
     duty = steps[(time / 0.6).astype(int)]
     duty[time < 0.3] = 0.0
     return recording_under(duty, time, changes, random)
+
+
+def recording_in_closed_loop(changes: dict[str, float], seed: int = 0) -> Recording:
+    """24 s at 500 Hz under the PIFLC at modest duty, a new setpoint every 2 s; the valve as above."""
+    random = np.random.default_rng(seed)
+    time = np.arange(0.0, 24.0, 0.002)
+    setpoints = random.uniform(0.15, 1.4, 12)[(time / 2.0).astype(int)]
+    run = simulate_laps(NOMINAL.with_values(changes), MODEST, setpoints[np.newaxis], noise=NOISE, seed=seed)
+    return Recording("test.mcap", "hall_voltage", time, run.hall_voltage[0], Channel(time, run.duty[0]))
 
 
 def recording_under(
