@@ -45,7 +45,8 @@ class Recording:
     `time` [s] counts from the first sample that was measured, shape (samples,); `measured` is Hall voltage [V] or
     position [rad]. The channels are signed duty [1], supply voltage [V], temperature [degC], bridge enabled
     [0 or 1] and setpoints [rad]; what was recorded before the first sample has a negative time. `time_source`
-    says which clock the times come from.
+    says which clock the times come from. A sample that was sent again, with the same time and value as in lockstep
+    without a reply, counts once.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Recording:
         if self.quantity not in UNITS:
             raise InputError(f"{self.name}: found quantity {self.quantity!r}, expected one of {', '.join(UNITS)}.")
         check_signal(f"{self.name}: {self.quantity}", self.time, self.measured)
+        self._drop_repeats()
         if self.time.size < 2 or self.time[-1] <= 0:
             raise InputError(
                 f"{self.name} spans no time ({self.time.size} samples of {self.quantity}), expected two"
@@ -76,6 +78,18 @@ class Recording:
                 f"{self.name}: found a duty of magnitude {largest:g}, expected a fraction within [-1, 1]."
                 " Divide percentages by 100, and record the duty that was applied."
             )
+
+    def _drop_repeats(self) -> None:
+        again = np.flatnonzero(np.diff(self.time) == 0.0) + 1
+        other = again[self.measured[again] != self.measured[again - 1]]
+        if other.size:
+            raise InputError(
+                f"{self.name} has {other.size} samples of {self.quantity} with the time of the sample before and another"
+                f" value, first at {self.time[other[0]]:.3f} s ({self.time_source} time), expected a time for each."
+                " Choose a finer clock with --time {stamp,clock,publish,log}."
+            )
+        object.__setattr__(self, "time", np.delete(self.time, again))
+        object.__setattr__(self, "measured", np.delete(self.measured, again))
 
     @property
     def unit(self) -> str:

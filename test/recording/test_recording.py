@@ -1,5 +1,7 @@
 """A window of a recording keeps what acts on it; a channel holds its values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,3 +45,17 @@ def test_a_window_holds_the_same_inputs_as_the_whole(recording):
 def test_a_window_without_samples_is_refused(recording):
     with pytest.raises(InputError, match=r"made has no two samples from 20 to 30 s\. Choose a longer window"):
         recording.select(20.0, 30.0)
+
+
+def test_a_sample_sent_again_counts_once(recording):
+    """A plant in lockstep sends its sample again until a reply comes."""
+    again = np.sort(np.concatenate([np.arange(101), [0, 0, 7]]))
+    sent = replace(recording, time=recording.time[again], measured=recording.measured[again])
+    np.testing.assert_array_equal(sent.time, recording.time)
+    np.testing.assert_array_equal(sent.measured, recording.measured)
+
+
+def test_samples_that_share_a_time_are_refused(recording):
+    coarse = np.floor(recording.time)
+    with pytest.raises(InputError, match=r"90 samples of hall_voltage with the time of the sample before and another"):
+        replace(recording, time=coarse)
