@@ -84,9 +84,9 @@ class Recording:
         other = again[self.measured[again] != self.measured[again - 1]]
         if other.size:
             raise InputError(
-                f"{self.name} has {other.size} samples of {self.quantity} with the time of the sample before and another"
-                f" value, first at {self.time[other[0]]:.3f} s ({self.time_source} time), expected a time for each."
-                " Choose a finer clock with --time {stamp,clock,publish,log}."
+                f"{self.name} has {other.size} samples of {self.quantity} with the time of the sample before and"
+                f" another value, first at {self.time[other[0]]:.3f} s ({self.time_source} time), expected a time for"
+                " each. Choose a finer clock with --time {stamp,clock,publish,log}."
             )
         object.__setattr__(self, "time", np.delete(self.time, again))
         object.__setattr__(self, "measured", np.delete(self.measured, again))
