@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from pierburg_ros.diagnosis.cogging import through_stretches
 from pierburg_ros.diagnosis.evidence_data import EvidenceData, after_choice
 from pierburg_ros.diagnosis.explanation import Explanation, Variant, canonical, quantities, without
-from pierburg_ros.diagnosis.hypotheses import COGGING, Start, drifting, is_rough
+from pierburg_ros.diagnosis.hypotheses import Start, drifting, is_rough
 from pierburg_ros.diagnosis.polish import polished
 from pierburg_ros.diagnosis.prospects import PROMISING, Outlook, Prospect, most_promising
+from pierburg_ros.diagnosis.ripples import RIPPLES, Ripple, through_stretches
 from pierburg_ros.diagnosis.search import Fit, Search
 from pierburg_ros.diagnosis.significance import (
     ADEQUATE,
@@ -116,9 +116,10 @@ class Exploration:
         if accounts_for_all(best, self.data):
             return
         seeds = self._promising(best)
-        self._try_cogging(seeds)
-        if self._complete(size + 1):
-            return
+        for ripple in RIPPLES:
+            self._try_ripple(ripple, seeds)
+            if self._complete(size + 1):
+                return
         for seed in seeds:
             self.grow(seed)
             if not self._complete(size + 1):
@@ -242,15 +243,15 @@ class Exploration:
             fits = list(pool.map(self._finish, [look.fit for look in _best_looks(looks)[:FINISHED]]))
         self._hasty |= {fit.explanation for fit in fits}
 
-    def _try_cogging(self, seeds: list[Explanation]) -> None:
-        """Fit cogging on top of the `seeds` by the one way that leads to it where the shaft has slipped."""
+    def _try_ripple(self, ripple: Ripple, seeds: list[Explanation]) -> None:
+        """Fit a ripple on top of the `seeds` by the one way that leads to it where the shaft has slipped."""
         if len(seeds) < 2:
             return
-        self.progress(f"{COGGING.label}, through stretches")
-        grown = ((canonical(seed.plus(COGGING), self.drifts), seed) for seed in seeds)
+        self.progress(f"{ripple.variant.label}, through stretches")
+        grown = ((canonical(seed.plus(ripple.variant), self.drifts), seed) for seed in seeds)
         bases = {explanation: self._base(seed) for explanation, seed in grown if explanation is not None}
         with ThreadPoolExecutor(2) as pool:
-            fits = [self._keep(fit) for fit in through_stretches(self.search, bases, pool)]
+            fits = [self._keep(fit) for fit in through_stretches(self.search, ripple, bases, pool)]
         self.sharpen(fits)
 
     def grow(self, seed: Explanation) -> list[Fit]:

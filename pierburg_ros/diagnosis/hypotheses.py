@@ -64,6 +64,8 @@ not searched for but seen, see `resolution.py`."""
 
 COGGING = Variant("cogging_torque", ("amplitude", "periods_per_motor_revolution", "phase"))
 """Cogging, the number of teeth unknown."""
+PULSATION = Variant("external_load", ("amplitude", "frequency", "phase"))
+"""A load that pulsates throughout."""
 TURNS = (0.9, 16.0)
 """Range in which periods of cogging per motor revolution are looked for."""
 FREQUENCIES = (0.1, 20.0)
@@ -90,6 +92,11 @@ def turns(missing: MissingTorque, model: Model) -> list[float]:
     return rhythms(missing.angle * model.values["gear_ratio"] / (2 * math.pi), missing.torque, TURNS, 4)
 
 
+def pulses(missing: MissingTorque) -> list[float]:
+    """The strongest rhythms of a missing torque in time [Hz], strongest first, at most five."""
+    return rhythms(missing.time, missing.torque, FREQUENCIES, 5)
+
+
 def starts_of(data: EvidenceData, model: Model) -> dict[Variant, list[Start]]:
     """Starting values by variant on top of `model`: rhythms in angle and time from the torque that it misses."""
     starts = dict(STARTS)
@@ -100,10 +107,8 @@ def starts_of(data: EvidenceData, model: Model) -> dict[Variant, list[Start]]:
         for periods in dict.fromkeys((*turns(missing, model), 2.0, 3.0, 6.0))
         for phase in _BOTH
     ]
-    starts[Variant("external_load", ("amplitude", "frequency", "phase"))] = [
-        {"amplitude": 0.02, "frequency": frequency, "phase": phase}
-        for frequency in rhythms(missing.time, missing.torque, FREQUENCIES, 5)
-        for phase in _BOTH
+    starts[PULSATION] = [
+        {"amplitude": 0.02, "frequency": frequency, "phase": phase} for frequency in pulses(missing) for phase in _BOTH
     ]
     starts[Variant("external_load", ("torque", "start", "end"))] = [
         {"torque": load, "start": start, "end": end}
