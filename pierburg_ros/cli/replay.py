@@ -13,10 +13,10 @@ from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
 from pierburg_ros.identification.residual import Comparison, compare
 from pierburg_ros.identification.residual_plot import write_page, write_picture
-from pierburg_ros.recording import Recording, read_recording, write_recording
+from pierburg_ros.recording import read_recording, write_recording
 from pierburg_ros.recording.write import Signal
 
 FLOAT64 = "std_msgs/msg/Float64"
@@ -86,11 +86,6 @@ def signals(comparison: Comparison) -> dict[str, Signal]:
     return measured | simulated | inputs
 
 
-def _late(recording: Recording) -> str:
-    began = recording.time[0]
-    return f"; begins in motion, simulated from its first standstill at {began:.2f} s" if began > 0.0 else ""
-
-
 def summary(comparison: Comparison) -> Table:
     """The comparison as a table for the terminal."""
     recording, worst = comparison.recording, comparison.worst
@@ -101,7 +96,7 @@ def summary(comparison: Comparison) -> Table:
     effects = ", ".join(comparison.model.active_effects) or "none"
     rows = {
         "measured": f"{recording.quantity.replace('_', ' ')} in {unit}, {recording.time.size} samples"
-        f" over {recording.duration:.1f} s (times: {recording.time_source}){_late(recording)}",
+        f" over {recording.duration:.1f} s (times: {recording.time_source}){taken_up(recording)}",
         "effects in the model": effects,
         "RMSE": f"{comparison.rmse:.4g} {unit}",
         "noise of the measurement": f"{comparison.noise:.2g} {unit}",

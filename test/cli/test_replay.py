@@ -49,6 +49,18 @@ def test_writes_what_the_contract_names(at_rest, tmp_path, capsys):
     assert "RMSE" in capsys.readouterr().out
 
 
+def test_says_from_where_a_recording_that_begins_in_motion_is_simulated(tmp_path, capsys):
+    time = 0.002 * np.arange(3000)
+    level = np.interp(time, (0.0, 0.05, 0.4, 3.0, 4.0), (2.0, 2.5, 3.0, 3.0, 0.42))
+    noise = np.random.default_rng(1).normal(0.0, 0.003, time.size)
+    write_simulated(tmp_path / "moving.mcap", time, np.full(time.size, 0.2), level + noise)
+    assert replay(tmp_path / "moving.mcap", "--actuator", "pierburg", "--output", tmp_path / "out") == 0
+    assert "begins in motion" in capsys.readouterr().out
+    rows = np.loadtxt(tmp_path / "out" / "replay.csv", delimiter=",", skiprows=1)
+    assert 0.4 <= rows[0, 0] <= 0.46
+    assert rows.shape[0] == json.loads((tmp_path / "out" / "replay.json").read_text())["samples"]
+
+
 def test_its_mcap_can_be_replayed_again(at_rest, tmp_path):
     replay(at_rest, "--actuator", "pierburg", "--output", tmp_path / "once")
     again = read_recording(tmp_path / "once" / "replay.mcap")
