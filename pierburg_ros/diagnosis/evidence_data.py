@@ -146,8 +146,9 @@ def evidence_of(recordings: Sequence[Recording], actuator: Actuator) -> Evidence
     runs = []
     for given in recordings:
         recording = from_standstill(given, nominal)
-        angle, velocity = Start.of(recording.time, recording.measured).state(nominal, recording.quantity)
-        inputs, time = inputs_in_force(recording, actuator), recording.time
+        start = Start.of(recording.time, recording.measured)
+        angle, velocity = start.state(nominal, recording.quantity)
+        inputs, time = inputs_in_force(recording, start, actuator), recording.time
         parts = training_blocks(time), choosing_blocks(time)
         runs.append(Run(recording.name, inputs, time, recording.measured, angle, velocity, *parts))
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))

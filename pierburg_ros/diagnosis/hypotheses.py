@@ -73,7 +73,7 @@ FREQUENCIES = (0.1, 20.0)
 ROUGH = frozenset({"static_friction", "backlash", "position_dependent_friction", "external_load", "input_delay"})
 """Effects whose cost has many local minima, since events jump with their parameters."""
 TIMED = frozenset({"external_load", "thermal_resistance"})
-"""Effects that go by the time since the start: no stretch of a recording shows them by itself."""
+"""Effects that go by the time since the start: the first part of a recording may not show them."""
 
 
 def drifting(nominal: Model) -> tuple[str, ...]:

@@ -30,13 +30,13 @@ def inputs_of(recording: Recording) -> Inputs:
     return Inputs(times, duty, supply, enabled)
 
 
-def inputs_in_force(recording: Recording, actuator: Actuator) -> Inputs:
-    """`inputs_of` a recording of a running `actuator`.
+def inputs_in_force(recording: Recording, start: Start, actuator: Actuator) -> Inputs:
+    """`inputs_of` a recording of a running `actuator`, seen to begin at `start`.
 
     Away from the closed stop only a duty holds the shaft against its spring: there the first one has been in force
     before the recording began.
     """
-    inputs, start = inputs_of(recording), Start.of(recording.time, recording.measured)
+    inputs = inputs_of(recording)
     angle, _ = start.state(Model.nominal(actuator), recording.quantity)
     return inputs.held_before() if angle > actuator.lower_stop else inputs
 
@@ -51,8 +51,8 @@ class Resimulation:
                 " expected a recorded position. Choose another --actuator."
             )
         self.recording = recording
-        self.inputs = inputs_in_force(recording, actuator)
         self.start = Start.of(recording.time, recording.measured)
+        self.inputs = inputs_in_force(recording, self.start, actuator)
         self._decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
         self._nominal_scale = scale_of(Model.nominal(actuator), actuator.quantity)
 

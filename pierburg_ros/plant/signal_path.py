@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant import drive, elastic_gear, play_gear, rigid_gear, sensor, steady
 from pierburg_ros.plant.state import QUEUE
@@ -38,9 +40,7 @@ def recall(p, s, times, duty, supply_voltage, closed_bridge):
     inductance those that have arrived have driven their current, at the motor's present velocity.
     """
     supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
-    arrived = -1
-    while arrived + 1 < times.size and times[arrived + 1] + p.input_delay.delay <= s.time:
-        arrived += 1
+    arrived = np.searchsorted(times, s.time - p.input_delay.delay, side="right") - 1
     remembered = FORGOTTEN * p.armature_inductance.inductance / p.armature_resistance
     first = arrived
     while first > 0 and times[first] + p.input_delay.delay > s.time - remembered:

@@ -166,11 +166,9 @@ def begin(p, s, input_times, duty, supply_voltage, enabled, time):
 @kernel
 def run(p, s, input_times, duty, supply_voltage, enabled, sample_times, output):
     """Sample the plant at `sample_times` [s] into `output` while the inputs drive it; NaN from where it fails."""
-    index = -1
     changes = input_times.size
     now = sample_times[0]
-    while index + 1 < changes and input_times[index + 1] <= now:
-        index += 1
+    index = np.searchsorted(input_times, now, side="right") - 1
     for sample in range(sample_times.size):
         goal = sample_times[sample]
         while now < goal:

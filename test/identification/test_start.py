@@ -37,6 +37,13 @@ def test_one_that_rests_for_a_moment_starts_at_rest(nominal, seed):
     assert velocity == 0.0
 
 
+def test_a_shaft_that_moves_at_once_starts_with_its_velocity(nominal):
+    time = np.arange(2000) / 500.0
+    moving = 2.47 + 2.0 * time + 1e-4 * np.random.default_rng(3).standard_normal(2000)
+    _, velocity = Start.of(time, moving).state(nominal, "hall_voltage")
+    assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
+
+
 @pytest.mark.parametrize("rate", (-0.1, 0.05, 0.1))
 def test_one_that_creeps_starts_with_its_velocity(nominal, rate):
     """Fifty samples, 0.1 s, tell a rate to 15 mV/s, which is 6 mrad/s."""
