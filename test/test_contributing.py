@@ -32,7 +32,7 @@ print(repr(simulate(model, Inputs(np.array([0.0]), np.array([DUTY])), np.arange(
 def add_example(root: Path) -> None:
     """Follow CONTRIBUTING.md in the package under `root`."""
     file, line = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(), flags=re.DOTALL)
-    effects, load = root / PACKAGE / "effects", root / PACKAGE / "plant" / "load.py"
+    effects, load = root / PACKAGE / "effects", root / PACKAGE / "plant" / "torques" / "load.py"
     (effects / "air_flow.py").write_text(textwrap.dedent(file))
     registry = (effects / "__init__.py").read_text()
     registry = registry.replace("    armature_inductance,\n", "    air_flow,\n    armature_inductance,\n", 1)

@@ -19,10 +19,12 @@ ALLOWED = {
     "recording": {"errors", "kernel"},
 }
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
-ALLOWED["identification"] = ALLOWED["plant"] | {"plant", "recording"}
-ALLOWED["diagnosis"] = ALLOWED["identification"] | {"identification"}
-ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "control", "closed_loop", "processes"}
-ALLOWED["nodes"] = ALLOWED["proof"] | {"proof"}
+ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
+ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
+ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
+ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification"}
 ALLOWED["cli"] = ALLOWED["nodes"]
 FORMULATION = {"errors", "kernel"}
 ROS = {

@@ -10,8 +10,8 @@ import yaml
 
 from pierburg_ros.control import SETTINGS, Settings
 from pierburg_ros.control.parameter_file import read_parameter_file
-from pierburg_ros.nodes.plant_parameters import PLANT
-from pierburg_ros.nodes.recorder_parameters import RECORDER
+from pierburg_ros.nodes.core.plant_parameters import PLANT
+from pierburg_ros.nodes.core.recorder_parameters import RECORDER
 
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
@@ -82,7 +82,7 @@ def parameters(file, node):
 
 
 def test_the_plants_file_names_parameters_that_exist_in_their_range():
-    from pierburg_ros.nodes.physics import Physics, chosen_model
+    from pierburg_ros.nodes.core.physics import Physics, chosen_model
 
     physics = Physics(chosen_model("pierburg", ""), "exact", 0.0, 0)
     declared = {each.name: each for each in (*PLANT, *physics.declarations())}

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from drawing import Numbers, empty_figure, save
 
-from pierburg_ros.identification.audit import PRINTED, derive
-from pierburg_ros.identification.excitation import duty_sequence
-from pierburg_ros.identification.identification_plot import draw_static
-from pierburg_ros.identification.lumps import duties, lumps
-from pierburg_ros.identification.static_characteristic import static_characteristic
-from pierburg_ros.identification.synthetic import synthetic_recording
+from pierburg_ros.identification.experiment.excitation import duty_sequence
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.identification.paper.lumps import duties, lumps
+from pierburg_ros.identification.paper.static_characteristic import static_characteristic
+from pierburg_ros.identification.paper.table_one import PRINTED, derive
+from pierburg_ros.identification.plot import draw_static
 from pierburg_ros.plant import Inputs, Model, simulate
 
 TIME = np.arange(3501) / 500.0

@@ -16,9 +16,9 @@ from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.replay import summary, write_replay
 from pierburg_ros.cli.run import require_ros
+from pierburg_ros.comparison.compare import Comparison, compare
 from pierburg_ros.control import Controller
-from pierburg_ros.diagnosis.terminal import shown
-from pierburg_ros.identification.residual import Comparison, compare
+from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.plant import Model, Plant
 from pierburg_ros.processes import own_graph, running
 from pierburg_ros.recording import read_recording

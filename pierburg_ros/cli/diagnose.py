@@ -15,8 +15,8 @@ from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
 from pierburg_ros.diagnosis.diagnose import Result
 from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
-from pierburg_ros.diagnosis.report import write_page, write_picture
-from pierburg_ros.diagnosis.terminal import shown
+from pierburg_ros.diagnosis.report.page import write_page, write_picture
+from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 

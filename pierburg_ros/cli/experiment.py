@@ -18,17 +18,17 @@ from pierburg_ros.cli.run import require_ros
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.control import Schedule, Settings
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.discriminate import discriminate as design_sequence
-from pierburg_ros.identification.discriminate_report import words, write_picture
-from pierburg_ros.identification.excitation import (
+from pierburg_ros.identification.experiment.discriminate import discriminate as design_sequence
+from pierburg_ros.identification.experiment.discriminate_report import words, write_picture
+from pierburg_ros.identification.experiment.excitation import (
     DURATION,
     DUTY_RECIPES,
     duty_sequence,
     purpose,
     setpoint_sequence,
 )
-from pierburg_ros.identification.explanations import explanation
-from pierburg_ros.identification.synthetic import Signal, synthetic_recording
+from pierburg_ros.identification.experiment.explanations import explanation
+from pierburg_ros.identification.experiment.synthetic import Signal, synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
 from pierburg_ros.recording.write import write_simulated

@@ -13,21 +13,21 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.comparison.compare import Comparison
+from pierburg_ros.comparison.plot import write_picture
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.audit import audit as audit_checks
-from pierburg_ros.identification.identification_plot import write_page, write_static
-from pierburg_ros.identification.identification_table import (
+from pierburg_ros.estimation.start import from_standstill
+from pierburg_ros.identification.identify import Identification
+from pierburg_ros.identification.identify import identify as identify_recordings
+from pierburg_ros.identification.paper.table_one import audit as audit_checks
+from pierburg_ros.identification.plot import write_page, write_static
+from pierburg_ros.identification.table import (
     audit_lines,
     lump_table,
     paper_table,
     parameter_table,
     reasons,
 )
-from pierburg_ros.identification.identify import Identification
-from pierburg_ros.identification.identify import identify as identify_recordings
-from pierburg_ros.identification.residual import Comparison
-from pierburg_ros.identification.residual_plot import write_picture
-from pierburg_ros.identification.start import from_standstill
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 

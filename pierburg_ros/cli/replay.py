@@ -14,8 +14,8 @@ from rich.table import Table
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
-from pierburg_ros.identification.residual import Comparison, compare
-from pierburg_ros.identification.residual_plot import write_page, write_picture
+from pierburg_ros.comparison.compare import Comparison, compare
+from pierburg_ros.comparison.plot import write_page, write_picture
 from pierburg_ros.recording import read_recording, write_recording
 from pierburg_ros.recording.write import Signal
 

@@ -17,9 +17,9 @@ from pierburg_ros.control import Schedule, Settings, law, linear
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.sensor import measured, quantised
 from pierburg_ros.plant.signal_path import advance
 from pierburg_ros.plant.state import new_state, place
+from pierburg_ros.plant.torques.sensor import measured, quantised
 
 Signal = NDArray[np.float64]
 TICK = [(name, np.float64) for name in ("setpoint", "noise", "hall_voltage", "duty", "angle")]

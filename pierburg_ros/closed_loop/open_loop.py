@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate
-from pierburg_ros.plant.sensor import quantised
+from pierburg_ros.plant.torques.sensor import quantised
 
 
 def simulate_measurement(

@@ -8,21 +8,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis import audit, findings
-from pierburg_ros.diagnosis.across import select
-from pierburg_ros.diagnosis.conclusion import Conclusion, conclude
-from pierburg_ros.diagnosis.evidence_data import EvidenceData, Run, evidence_of
-from pierburg_ros.diagnosis.explanation import Explanation
-from pierburg_ros.diagnosis.explore import Exploration, Progress, explored
-from pierburg_ros.diagnosis.locate import locations
-from pierburg_ros.diagnosis.motion import motion_of
-from pierburg_ros.diagnosis.recalibrations import recalibrations
-from pierburg_ros.diagnosis.regimes import regimes
-from pierburg_ros.diagnosis.residual_shape import Shape, fit_shape
+from pierburg_ros.diagnosis.evidence import quality
+from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run, evidence_of
+from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.location.locations import locations
+from pierburg_ros.diagnosis.location.regimes import regimes
+from pierburg_ros.diagnosis.location.windows import windows
+from pierburg_ros.diagnosis.report import findings
+from pierburg_ros.diagnosis.report.words import advice, summary
 from pierburg_ros.diagnosis.schema import Diagnosis, Location, Regime, ResidualTorque, TorqueOverTime
-from pierburg_ros.diagnosis.uncertainty import estimates
-from pierburg_ros.diagnosis.windows import windows
-from pierburg_ros.diagnosis.wording import advice, summary
+from pierburg_ros.diagnosis.search.explanation import Explanation
+from pierburg_ros.diagnosis.search.explore import Exploration, Progress, explored
+from pierburg_ros.diagnosis.search.intervals import estimates
+from pierburg_ros.diagnosis.verdict.conclusion import Conclusion, conclude
+from pierburg_ros.diagnosis.verdict.recalibrations import recalibrations
+from pierburg_ros.diagnosis.verdict.residual_shape import Shape, fit_shape
+from pierburg_ros.diagnosis.verdict.shared import select
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -52,7 +53,7 @@ def diagnose(
 
     `progress` is told what is being tried. InputError where the recordings cannot be used.
     """
-    audit.refuse_unusable(recordings)
+    quality.refuse_unusable(recordings)
     exploration = explored(evidence_of(recordings, nominal.actuator), nominal, progress)
     data = exploration.data
     conclusion = conclude(exploration)
@@ -94,12 +95,12 @@ def _document(
     model = shape.model if shape is not None else final.model
     effects = findings.effects(conclusion)
     parameters = findings.parameters(exploration, conclusion)
-    quality = audit.data_quality(data.runs, data.actuator, data.noise)
+    sampling = quality.data_quality(data.runs, data.actuator, data.noise)
     fit = findings.fit_quality(exploration, conclusion, model)
     changes = findings.changes(final)
     hidden = findings.not_testable(exploration, conclusion)
     places, ranges = _located(data, conclusion)
-    limits = audit.limits_of(data.runs, data.actuator, data.noise)
+    limits = quality.limits_of(data.runs, data.actuator, data.noise)
     return Diagnosis(
         schema=1,
         recordings=[recording.name for recording in recordings],
@@ -116,12 +117,12 @@ def _document(
         candidates=findings.candidates(exploration, conclusion),
         not_testable=hidden,
         residual_torque=_residual_torque(shape),
-        data_quality=quality,
+        data_quality=sampling,
         advice=advice(conclusion.verdict, effects, parameters, hidden, limits),
     )
 
 
-def _cautioned(limits: Sequence[audit.Limit], text: str) -> str:
+def _cautioned(limits: Sequence[quality.Limit], text: str) -> str:
     """The summary, or, where the recordings cannot decide anything, why not."""
     decisive = [limit.finding for limit in limits if limit.decisive]
     return f"Nothing can be concluded: {' '.join(decisive)} {text}" if decisive else text

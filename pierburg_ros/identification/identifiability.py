@@ -9,9 +9,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.identification.fit import Fit
-from pierburg_ros.identification.problem import Problem
-from pierburg_ros.identification.scaling import Scaling
+from pierburg_ros.estimation.fit import Fit
+from pierburg_ros.estimation.problem import Problem
+from pierburg_ros.estimation.scaling import Scaling
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]

@@ -10,15 +10,15 @@ import numpy as np
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.fit import Fit, fit
+from pierburg_ros.estimation.fit import Fit, fit
+from pierburg_ros.estimation.resimulation import resimulate
 from pierburg_ros.identification.identifiability import Finding, identifiability
-from pierburg_ros.identification.lumps import Lump, fitted_duties, fitted_lumps
-from pierburg_ros.identification.resimulation import resimulate
-from pierburg_ros.identification.static_characteristic import (
+from pierburg_ros.identification.paper.lumps import Lump, fitted_duties, fitted_lumps
+from pierburg_ros.identification.paper.static_characteristic import (
     StaticCharacteristic,
     static_characteristic,
 )
-from pierburg_ros.identification.step_response import StepResponse, step_response
+from pierburg_ros.identification.paper.step_response import StepResponse, step_response
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of

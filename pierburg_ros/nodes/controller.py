@@ -13,13 +13,13 @@ from std_srvs.srv import SetBool
 from pierburg_ros.control import Controller, Setpoints, Settings, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.controller_parameters import CONTROLLER, LAW
+from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW
+from pierburg_ros.nodes.core.sampled_controller import SampledController
 from pierburg_ros.nodes.diagnostics import ERROR
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED, SIGNALS
 from pierburg_ros.nodes.running import run
 from pierburg_ros.nodes.sample_clock import SampleClock
-from pierburg_ros.nodes.sampled_controller import SampledController
 
 STATUS_PERIOD = 0.1
 """Time between two publications of an unchanged `active_setpoint` [s]."""

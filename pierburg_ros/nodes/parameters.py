@@ -18,7 +18,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.declaration import Declaration, Value
+from pierburg_ros.nodes.core.declaration import Declaration, Value
 from pierburg_ros.nodes.diagnostics import Diagnostics
 from pierburg_ros.nodes.qos import COMMANDS
 

@@ -15,16 +15,16 @@ from std_srvs.srv import Trigger
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
+from pierburg_ros.nodes.core.physics import Physics, chosen_model
+from pierburg_ros.nodes.core.plant_parameters import PLANT
+from pierburg_ros.nodes.core.sampled_plant import Sample, SampledPlant
+from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.nodes.diagnostics import ERROR, WARN
 from pierburg_ros.nodes.pacing import Pacer
 from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.physics import Physics, chosen_model
-from pierburg_ros.nodes.plant_parameters import PLANT
 from pierburg_ros.nodes.plant_time import Lockstep, tick_as_time_source, tick_by_clock
 from pierburg_ros.nodes.qos import PUBLISHED, SIGNALS
 from pierburg_ros.nodes.running import run
-from pierburg_ros.nodes.sampled_plant import Sample, SampledPlant
-from pierburg_ros.nodes.shaft_sensor import ShaftSensor
 
 SWITCH_INTERVAL = 0.0005
 """Longest turn of one thread [s] while another waits; Python's own 5 ms are more than a period."""

@@ -11,9 +11,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.nodes.core.recorder_parameters import DEFAULT_TOPICS
 from pierburg_ros.nodes.definitions import message_class, type_hash
 from pierburg_ros.nodes.qos import RECORDED, described
-from pierburg_ros.nodes.recorder_parameters import DEFAULT_TOPICS
 from pierburg_ros.nodes.recording_file import Topic
 
 

@@ -14,16 +14,16 @@ from std_srvs.srv import SetBool, Trigger
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
+from pierburg_ros.nodes.core.recorder_parameters import RECORDER
+from pierburg_ros.nodes.core.source_order import SimulatedTime, SourceOrder
 from pierburg_ros.nodes.definitions import type_name
 from pierburg_ros.nodes.diagnostics import ERROR
 from pierburg_ros.nodes.parameter_values import ParameterValues
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.recorded_topics import Received, RecordedTopics
-from pierburg_ros.nodes.recorder_parameters import RECORDER
 from pierburg_ros.nodes.recording_file import RecordingFile, Topic
 from pierburg_ros.nodes.recording_series import RecordingSeries
 from pierburg_ros.nodes.running import run
-from pierburg_ros.nodes.source_order import SimulatedTime, SourceOrder
 
 HORIZON = 0.1
 """Time for which messages are held back to be written in the order of their sending [s]."""

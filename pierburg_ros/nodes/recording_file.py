@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pierburg_ros.nodes.definitions import definition, type_hash
-from pierburg_ros.recording.mcap_writer import McapWriter
+from pierburg_ros.recording.formats.mcap_writer import McapWriter
 
 CHUNK = 64 * 1024
 """Bytes that a writer which is killed may lose; with the usual 1 MiB peers lost seconds."""

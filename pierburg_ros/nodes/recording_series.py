@@ -9,7 +9,7 @@ import yaml
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.recording_file import RecordingFile
-from pierburg_ros.recording.mcap_writer import bag_metadata
+from pierburg_ros.recording.formats.mcap_writer import bag_metadata
 
 
 class RecordingSeries:

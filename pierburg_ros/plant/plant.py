@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from pierburg_ros.plant.model import Model
-from pierburg_ros.plant.sensor import measured, quantised
 from pierburg_ros.plant.signal_path import advance
 from pierburg_ros.plant.state import new_state
+from pierburg_ros.plant.torques.sensor import measured, quantised
 
 
 class Plant:

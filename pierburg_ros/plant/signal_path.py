@@ -7,8 +7,10 @@ import math
 import numpy as np
 
 from pierburg_ros.kernel import kernel
-from pierburg_ros.plant import drive, elastic_gear, play_gear, rigid_gear, sensor, steady
+from pierburg_ros.plant.gear import elastic, play, rigid
+from pierburg_ros.plant.motion import steady
 from pierburg_ros.plant.state import QUEUE
+from pierburg_ros.plant.torques import drive, sensor
 
 LONGEST = 0.002
 """Longest stretch [s] over which the winding keeps its resistance, and the shaft its velocity for the sensor's lag."""
@@ -116,11 +118,11 @@ def _mechanics(p, s, duration):
     for _ in range(EVENTS):
         start, amperes = s.motor_angle, s.current
         if p.gear_compliance.stiffness != 0.0:
-            used = elastic_gear.move(p, s, remaining)
+            used = elastic.move(p, s, remaining)
         elif p.backlash.gap != 0.0:
-            used = play_gear.move(p, s, remaining)
+            used = play.move(p, s, remaining)
         else:
-            used = rigid_gear.move(p, s, remaining)
+            used = rigid.move(p, s, remaining)
         if p.sensor_moves:
             sensor.follow(p, s, used)
         if heats and used > 0.0:

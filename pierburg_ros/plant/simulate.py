@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
-from pierburg_ros.plant.sensor import measured, quantised
 from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import new_state
+from pierburg_ros.plant.torques.sensor import measured, quantised
 
 Signal = NDArray[np.float64]
 LONG_BEFORE = 10.0

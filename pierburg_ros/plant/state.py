@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from pierburg_ros.kernel import kernel
-from pierburg_ros.plant.friction import level
+from pierburg_ros.plant.torques.friction import level
 
 QUEUE = 1024
 """Duty changes that may be under way at once when the input is delayed."""

@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.comparison.compare import compare
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.residual import compare
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.bench import record
 from pierburg_ros.proof.formulation import simulate_textbook
@@ -43,7 +43,7 @@ DIAGNOSE = (sys.executable, "-c", "from pierburg_ros.cli.app import main; main()
 LONGEST = 900.0  # s, after which a diagnosis counts as failed
 RESULT = "result.json"
 PACKAGE = Path(__file__).parents[1]
-DIAGNOSING = ("actuators", "diagnosis", "effects", "identification", "plant", "recording")
+DIAGNOSING = ("actuators", "diagnosis", "effects", "estimation", "plant", "recording")
 """Folders whose sources a diagnosis depends on."""
 Signal = NDArray[np.float64]
 

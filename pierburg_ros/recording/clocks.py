@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording import cdr
-from pierburg_ros.recording.messages import Integers, Messages
+from pierburg_ros.recording.formats import cdr
+from pierburg_ros.recording.formats.messages import Integers, Messages
 from pierburg_ros.recording.roles import Cast
 
 MEASURED = ("hall_voltage", "joint_states")

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording import cdr
 from pierburg_ros.recording.clocks import Clocks, Timed, check_one_clock
-from pierburg_ros.recording.csv_table import read_csv
-from pierburg_ros.recording.messages import Messages
+from pierburg_ros.recording.formats import cdr
+from pierburg_ros.recording.formats.csv_table import read_csv
+from pierburg_ros.recording.formats.messages import Messages
+from pierburg_ros.recording.formats.rosbag2 import read_bag
 from pierburg_ros.recording.recording import Channel, Recording, Samples
 from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
-from pierburg_ros.recording.rosbag2 import read_bag
 
 SOURCES = ("stamp", "clock", "publish", "log")
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording.cdr import BOOL, CLOCK, FLOAT64, JOINT_STATE
-from pierburg_ros.recording.messages import Bag, Messages
+from pierburg_ros.recording.formats.cdr import BOOL, CLOCK, FLOAT64, JOINT_STATE
+from pierburg_ros.recording.formats.messages import Bag, Messages
 
 ROLES = {
     "duty": FLOAT64,

@@ -13,9 +13,9 @@ import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording import cdr
-from pierburg_ros.recording.mcap_writer import TYPES, McapWriter, bag_metadata
-from pierburg_ros.recording.messages import Integers
+from pierburg_ros.recording.formats import cdr
+from pierburg_ros.recording.formats.mcap_writer import TYPES, McapWriter, bag_metadata
+from pierburg_ros.recording.formats.messages import Integers
 from pierburg_ros.recording.recording import UNITS, Channel
 
 Signal = tuple[str, ArrayLike, ArrayLike]

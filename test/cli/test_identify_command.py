@@ -7,8 +7,8 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
-from pierburg_ros.identification.excitation import duty_sequence
-from pierburg_ros.identification.synthetic import synthetic_recording
+from pierburg_ros.identification.experiment.excitation import duty_sequence
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.write import write_simulated
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from closed_form import NOISE, sliding
+from support.closed_form import NOISE, sliding
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.identification.excitation import duty_sequence
-from pierburg_ros.identification.synthetic import synthetic_recording
+from pierburg_ros.identification.experiment.excitation import duty_sequence
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 

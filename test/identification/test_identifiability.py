@@ -2,10 +2,10 @@
 
 import pytest
 
-from pierburg_ros.identification.fit import fit
+from pierburg_ros.estimation.fit import fit
 from pierburg_ros.identification.identifiability import identifiability
 from pierburg_ros.identification.identify import free_names
-from pierburg_ros.identification.lumps import fitted_lumps
+from pierburg_ros.identification.paper.lumps import fitted_lumps
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ pytest.importorskip("rclpy")
 from std_msgs.msg import Float64
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.identification.residual import compare
+from pierburg_ros.comparison.compare import compare
 from pierburg_ros.plant import Model
 from pierburg_ros.processes import free_domain
 from pierburg_ros.recording import read_recording

@@ -17,13 +17,13 @@ from mcap.records import Channel, Message
 from mcap.stream_reader import StreamReader
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from ros_graph import DEADLINE
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
+from support.ros_graph import DEADLINE
 
 pytestmark = pytest.mark.ros
 

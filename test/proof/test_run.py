@@ -12,7 +12,7 @@ from pierburg_ros.proof import docket, document, plan, run
 from pierburg_ros.proof.concealment import draw
 from pierburg_ros.proof.graph import NotRecorded
 
-COMMAND = (sys.executable, str(Path(__file__).parent / "fake_diagnosis.py"))
+COMMAND = (sys.executable, str(Path(__file__).parents[1] / "support" / "fake_diagnosis.py"))
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""A recording beside what a model makes of the same inputs."""

@@ -1,0 +1,78 @@
+"""Plots of a comparison: measured and simulated, residual, duty; as an interactive page and as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import plotly.graph_objects as go
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from plotly.subplots import make_subplots
+
+from pierburg_ros.comparison.compare import Comparison
+
+COLOURS = {"measured": "#7f7f7f", "simulated": "#d62728", "residual": "#1f77b4", "duty": "#2ca02c"}
+LABELS = {"hall_voltage": "Hall voltage [V]", "position": "position [rad]"}
+
+
+def title(comparison: Comparison) -> str:
+    """One line that says what is compared and how far apart it is."""
+    unit = comparison.recording.unit
+    return (
+        f"{comparison.recording.name} and {comparison.model.actuator.name}:"
+        f" RMSE {comparison.rmse:.4g} {unit}, measurement noise {comparison.noise:.2g} {unit}"
+    )
+
+
+def duty_percent(comparison: Comparison) -> np.ndarray:
+    """Duty [%] in force at each sample."""
+    return 100.0 * comparison.recording.duty.at(comparison.recording.time, before=0.0)
+
+
+def write_page(path: Path, comparison: Comparison) -> None:
+    """Write a page that needs no network, with zoom and values under the pointer."""
+    recording = comparison.recording
+    figure = make_subplots(rows=3, shared_xaxes=True, row_heights=[0.5, 0.3, 0.2], vertical_spacing=0.04)
+    rows = (
+        ("measured", recording.measured, 1),
+        ("simulated", comparison.simulated, 1),
+        ("residual", comparison.residual, 2),
+        ("duty", duty_percent(comparison), 3),
+    )
+    for name, values, row in rows:
+        line = {"color": COLOURS[name], "width": 1.5, "shape": "hv" if name == "duty" else "linear"}
+        figure.add_trace(go.Scattergl(x=recording.time, y=values, name=name, line=line), row=row, col=1)
+    worst = comparison.worst
+    figure.add_vrect(worst.start, worst.end, row=2, col=1, opacity=0.15, line_width=0, fillcolor="orange")
+    figure.update_yaxes(title_text=LABELS[recording.quantity], row=1)
+    figure.update_yaxes(title_text=f"residual [{recording.unit}]", row=2)
+    figure.update_yaxes(title_text="duty [%]", row=3)
+    figure.update_xaxes(title_text="time [s]", row=3)
+    figure.update_layout(title=title(comparison), template="plotly_white", height=800)
+    figure.write_html(path, include_plotlyjs=True)
+
+
+def write_picture(path: Path, comparison: Comparison) -> None:
+    """Write the same three plots as a PNG."""
+    recording = comparison.recording
+    figure = Figure(figsize=(10, 6.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    signal, residual, duty = figure.subplots(3, sharex=True, height_ratios=[5, 3, 2])
+    signal.set_title(title(comparison), fontsize=10)
+    for name, values, style in (
+        ("measured", recording.measured, "-"),
+        ("simulated", comparison.simulated, "--"),
+    ):
+        signal.plot(recording.time, values, style, color=COLOURS[name], linewidth=1.2, label=name)
+    signal.legend(loc="upper right", fontsize=8)
+    residual.plot(recording.time, comparison.residual, color=COLOURS["residual"], linewidth=0.8)
+    worst = comparison.worst
+    residual.axvspan(worst.start, worst.end, color="orange", alpha=0.2, label="worst stretch")
+    residual.legend(loc="upper right", fontsize=8)
+    duty.step(recording.time, duty_percent(comparison), where="post", color=COLOURS["duty"], linewidth=0.8)
+    signal.set_ylabel(LABELS[recording.quantity])
+    residual.set_ylabel(f"residual [{recording.unit}]")
+    duty.set_ylabel("duty [%]")
+    duty.set_xlabel("time [s]")
+    figure.savefig(path, dpi=120)

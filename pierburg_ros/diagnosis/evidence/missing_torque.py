@@ -1,0 +1,131 @@
+"""What the data say of the torque that a model lacks, sample by sample while the shaft moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
+from pierburg_ros.plant import Model
+
+Signal = NDArray[np.float64]
+
+GRID = 0.02
+"""Time step [s] on which missing torque is estimated."""
+SPOT = 0.05
+"""Width of the bins [rad] in which tight spots are looked for."""
+MOVING = 0.1
+"""Velocity [rad/s] from which friction has a known sign."""
+
+
+@dataclass(frozen=True)
+class MissingTorque:
+    """The load torque [N.m] that a model lacks where the shaft moves, with time [s], angle, velocity; (moving,)."""
+
+    time: Signal
+    angle: Signal
+    velocity: Signal
+    torque: Signal
+
+
+def missing_torque(data: EvidenceData, run: Run, model: Model) -> MissingTorque:
+    """What the load torque of `model` lacks.
+
+    While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque), from
+    equation (6) of the paper without the inertia, which is out of reach (time constant 15 us).
+    """
+    value = model.values
+    scale = data.angle_per_unit
+    grid = np.arange(run.time[0], run.time[-1], GRID)
+    simulated = _averaged(run.time, run.simulated(model), grid) * scale
+    measured = _averaged(run.time, run.measured, grid) * scale
+    constant = value["gear_ratio"] * value["torque_constant"]
+    damping = constant**2 / value["armature_resistance"] + value["viscous_friction.coefficient"]
+    stiffness = value.get("spring_stiffness", 0.0)
+    error = measured - simulated
+    torque = -(damping * np.gradient(error, GRID) + stiffness * error)
+    speeds = np.gradient(measured, GRID), np.gradient(simulated, GRID)
+    moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
+    return MissingTorque(grid[moving], measured[moving], speeds[0][moving], torque[moving])
+
+
+def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:
+    """Means of `values` over one grid step around each grid point."""
+    edges = np.searchsorted(time, np.append(grid - GRID / 2, grid[-1] + GRID / 2))
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    count = np.maximum(np.diff(edges), 1)
+    means = (total[edges[1:]] - total[edges[:-1]]) / count
+    return np.where(np.diff(edges) > 0, means, np.interp(grid, time, values))
+
+
+def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: int) -> list[float]:
+    """The strongest frequencies [1 / unit of place] of `torque` at uneven `place`, strongest first, at most `most`."""
+    if place.size < 20 or np.ptp(place) == 0.0:
+        return []
+    span = np.ptp(place)
+    frequencies = np.arange(*between, 0.25 / span)
+    centred = torque - np.median(torque)
+    limit = 4.0 * np.median(np.abs(centred))
+    centred = np.clip(centred, -limit, limit)
+    power = np.empty(frequencies.size)
+    for part in np.array_split(np.arange(frequencies.size), max(1, frequencies.size // 200)):
+        waves = np.exp(2j * np.pi * np.outer(frequencies[part], place))
+        power[part] = np.abs(waves @ centred)
+    found: list[float] = []
+    for index in np.argsort(power)[::-1]:
+        if all(abs(frequencies[index] - other) > 1.0 / span for other in found):
+            found.append(float(frequencies[index]))
+        if len(found) == most:
+            break
+    return found
+
+
+def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[float, float, float]]:
+    """Stretches (start [s], end [s] or 0 for never, torque [N.m]) in which the mean of `torque` stands out."""
+    width = max(end / 120.0, 0.25)
+    bins = np.floor(time / width).astype(int)
+    count = np.bincount(bins, minlength=int(end / width) + 1).astype(float)
+    limit = 6.0 * np.median(np.abs(torque - np.median(torque))) if torque.size else 0.0
+    clipped = np.clip(torque - np.median(torque), -limit, limit) if torque.size else torque
+    total = np.bincount(bins, weights=clipped, minlength=count.size)
+    sums, counts = np.concatenate([[0.0], np.cumsum(total)]), np.concatenate([[0.0], np.cumsum(count)])
+    first, last = np.triu_indices(sums.size, 1)
+    inside, weight = sums[last] - sums[first], counts[last] - counts[first]
+    outside, rest = sums[-1] - inside, counts[-1] - weight
+    usable = (weight > 5) & (rest > 5)
+    contrast = np.zeros(first.size)
+    difference = np.divide(inside, weight, where=usable, out=np.zeros(first.size)) - np.divide(
+        outside, rest, where=usable, out=np.zeros(first.size)
+    )
+    contrast[usable] = np.abs(difference[usable]) * np.sqrt(weight[usable] * rest[usable])
+    found: list[tuple[float, float, float]] = []
+    for index in np.argsort(contrast)[::-1][:2000]:
+        start, stop = first[index] * width, last[index] * width
+        if all(abs(start - a) + abs(stop - (b or end)) > 6 * width for a, b, _ in found):
+            found.append((start, 0.0 if stop >= end - width else stop, float(difference[index])))
+        if len(found) == most:
+            break
+    return found
+
+
+def tight_spots(missing: MissingTorque, most: int) -> list[float]:
+    """Angles [rad] at which more friction is missing than elsewhere, the clearest first, at most `most`."""
+    if missing.angle.size < 20:
+        return []
+    against = missing.torque * np.sign(missing.velocity)
+    limit = 6.0 * np.median(np.abs(against - np.median(against)))
+    against = np.clip(against - np.median(against), -limit, limit)
+    first = missing.angle.min()
+    bins = np.floor((missing.angle - first) / SPOT).astype(int)
+    count = np.bincount(bins)
+    clearness = np.bincount(bins, weights=against) / np.sqrt(np.maximum(count, 1))
+    found: list[float] = []
+    for index in np.argsort(clearness)[::-1]:
+        angle = float(first + (index + 0.5) * SPOT)
+        if all(abs(angle - other) > 2.5 * SPOT for other in found):
+            found.append(angle)
+        if len(found) == most:
+            break
+    return found

@@ -1,0 +1,137 @@
+"""What the shaft does in a recording: angle, velocity, rest, reversals and stops, sample by sample."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.diagnosis.evidence.data import Run
+
+Signal = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+HALF_WINDOW = 0.02
+"""Half the time [s] over which a velocity is taken; two samples where they are farther apart."""
+SLOWEST = 0.05
+"""Velocity [rad/s] below which the shaft counts as standing still, unless noise asks for more."""
+NEAR = 0.015
+"""Distance from a stop [rad] within which the shaft counts as on it, besides three times the noise."""
+AFTERMATH = 0.3
+"""How long after a standstill [s] the movement counts as the first one."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """All of shape (samples,). The angle [rad] is read by the nominal sensor, the duty is the one in force."""
+
+    time: Signal
+    angle: Signal
+    velocity: Signal
+    duty: Signal
+    moving: Flags
+    closed: Flags
+    open: Flags
+    actuator: Actuator
+
+    @property
+    def direction(self) -> Signal:
+        """1 opening, -1 closing: of the present movement or the last one; 0 before the first."""
+        sign = np.where(self.moving, np.sign(self.velocity), 0.0)
+        last = np.maximum.accumulate(np.where(sign != 0.0, np.arange(sign.size), 0))
+        return np.asarray(sign[last])
+
+    @property
+    def reversals(self) -> NDArray[np.intp]:
+        """Samples at which the shaft sets off against its last direction."""
+        direction = self.direction
+        return np.flatnonzero((np.diff(direction) != 0.0) & (direction[:-1] != 0.0)) + 1
+
+    @property
+    def departures(self) -> NDArray[np.intp]:
+        """Samples at which a movement begins."""
+        return np.flatnonzero(self.moving[1:] & ~self.moving[:-1]) + 1
+
+    @property
+    def time_at_rest(self) -> Signal:
+        """How long the shaft has stood still [s], or had before a movement begun less than 0.3 s ago; else 0."""
+        began = np.zeros(self.time.size)
+        arrivals = np.flatnonzero(~self.moving[1:] & self.moving[:-1]) + 1
+        began[arrivals] = self.time[arrivals]
+        stood = self.time - np.maximum.accumulate(np.where(self.moving, 0.0, began))
+        resting = np.where(self.moving, 0.0, stood)
+        departures = self.departures
+        place = np.searchsorted(departures, np.arange(self.time.size), side="right") - 1
+        if departures.size == 0:
+            return np.asarray(resting)
+        latest = departures[np.maximum(place, 0)]
+        fresh = self.moving & (place >= 0) & (self.time - self.time[latest] < AFTERMATH)
+        return np.asarray(np.where(fresh, resting[latest - 1], resting))
+
+    @property
+    def time_since_reversal(self) -> Signal:
+        """Time since the shaft last turned round, or since the start [s]."""
+        turned = np.concatenate([[0], self.reversals])
+        place = np.searchsorted(turned, np.arange(self.time.size), side="right") - 1
+        return np.asarray(self.time - self.time[turned[place]])
+
+    @property
+    def stop_distance(self) -> Signal | None:
+        """Distance to the nearer stop [rad], not below 0; None where there is no stop."""
+        below, above = self.angle - self.actuator.lower_stop, self.actuator.upper_stop - self.angle
+        nearest = np.minimum(below, above)
+        return np.maximum(nearest, 0.0) if np.all(np.isfinite(nearest)) else None
+
+
+def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
+    """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
+    angle, per_unit = angle_of(run.measured, actuator)
+    interval = float(np.median(np.diff(run.time)))
+    half = max(HALF_WINDOW, 2.0 * interval)
+    spread = noise * per_unit
+    # each end of the difference is a mean over the half window
+    slowest = max(SLOWEST, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
+    velocity = slope(run.time, angle, half)
+    near = NEAR + 3.0 * spread
+    place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
+    duty = np.where(place < 0, 0.0, run.inputs.duty[np.maximum(place, 0)])
+    return Motion(
+        time=run.time - run.time[0],
+        angle=angle,
+        velocity=velocity,
+        duty=duty,
+        moving=np.abs(velocity) > slowest,
+        closed=angle <= actuator.lower_stop + near,
+        open=angle >= actuator.upper_stop - near,
+        actuator=actuator,
+    )
+
+
+def angle_of(measured: Signal, actuator: Actuator) -> tuple[Signal, float]:
+    """Angle [rad] that the nominal sensor reads, and rad per measured unit."""
+    if actuator.quantity == "position":
+        return measured, 1.0
+    closed, opened = (actuator.parameters[f"hall_voltage_{end}"].nominal for end in ("closed", "open"))
+    per_volt = math.pi / 2.0 / (opened - closed)
+    return (measured - closed) * per_volt, abs(per_volt)
+
+
+def slope(time: Signal, values: Signal, half: float) -> Signal:
+    """Velocity of `values`: the means of `half` [s] after and before each sample, over their distance in time.
+
+    Within `half` of either end, where too few samples are left, it is that of the nearest sample farther in.
+    """
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    moments = np.concatenate([[0.0], np.cumsum(time)])
+    here = np.arange(time.size)
+    first = np.searchsorted(time, time - half, side="left")
+    last = np.searchsorted(time, time + half, side="right")
+    before, after = here + 1 - first, last - here
+    rise = (total[last] - total[here]) / after - (total[here + 1] - total[first]) / before
+    run = (moments[last] - moments[here]) / after - (moments[here + 1] - moments[first]) / before
+    velocity = np.divide(rise, run, out=np.zeros(time.size), where=run > 0.0)
+    inner = np.flatnonzero((time >= time[0] + half) & (time <= time[-1] - half))
+    return np.asarray(velocity[np.clip(here, inner[0], inner[-1])] if inner.size else velocity)

@@ -1,0 +1,277 @@
+"""What recordings are like before anything is concluded from them, and what they cannot tell for that reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.diagnosis.evidence.data import Run
+from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
+from pierburg_ros.diagnosis.schema import DataQuality
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.start import Start
+from pierburg_ros.recording import Recording
+
+Signal = NDArray[np.float64]
+Kind = Literal[
+    "no_movement",
+    "constant_duty",
+    "saturated",
+    "begins_moving",
+    "short",
+    "slow_sampling",
+    "gaps",
+    "one_direction",
+    "closed_stop",
+    "open_stop",
+    "little_travel",
+]
+
+FEWEST_SAMPLES = 200
+"""Samples without which nothing can be fitted and judged."""
+SHORTEST = 2.0
+"""Duration [s] without which nothing can be fitted and judged: less than two time constants of the valve."""
+SHORT = 10.0
+"""Duration [s] below which rare events and slow changes stay unseen."""
+SLOW_SAMPLING = 100.0
+"""Rate [Hz] below which a few milliseconds of delay or lag cannot be told from other errors."""
+SATURATED = 0.9
+"""Share of time at full duty from which a recording counts as saturated throughout."""
+GAP = 3.0
+"""An interval of so many median ones is a gap."""
+MOST_GAPS = 0.02
+"""Share of time in gaps that counts as many."""
+SEEN = 0.02
+"""Time [s] on a stop from which it counts as touched."""
+SHORT_TRAVEL = 0.35
+"""Travel [rad] below which what depends on the angle stays unseen: 20 degrees."""
+
+RECORD: dict[Kind, str] = {
+    "no_movement": "Record again with duty steps large enough to move the shaft both ways.",
+    "constant_duty": "Record again with duty steps of several sizes.",
+    "saturated": "Record again with duty steps well within the limits, up and down.",
+    "begins_moving": "Start recording before the shaft moves.",
+    "short": "Record a minute, with movements in both directions.",
+    "slow_sampling": "Record at 500 Hz.",
+    "gaps": "Record on an idle machine, or with the recorder's queue made longer.",
+    "one_direction": "Record opening and closing over the same angles.",
+    "little_travel": "Record movements over the whole travel.",
+    "closed_stop": "Record a return to the closed stop at duty 0, then press against it with negative duty.",
+    "open_stop": "Record a run to the open stop, and press against it with more and less duty.",
+}
+"""What to record next to lift each limit."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Something about the recordings that keeps questions open; `finding` says what and which, in words."""
+
+    kind: Kind
+    finding: str
+    decisive: bool = False
+    """Whether nothing at all can be concluded about the physics."""
+
+    @property
+    def record(self) -> str:
+        """What to record next to lift it."""
+        return RECORD[self.kind]
+
+
+def refuse_unusable(recordings: Sequence[Recording]) -> None:
+    """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
+    for recording in recordings:
+        if recording.time.size < FEWEST_SAMPLES or recording.duration < SHORTEST:
+            raise InputError(
+                f"{recording.name} is too short ({recording.time.size} samples over {recording.duration:.2f} s);"
+                f" expected at least {FEWEST_SAMPLES} samples over {SHORTEST:g} s. Record longer: a minute with"
+                " movements in both directions tells most."
+            )
+
+
+def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQuality:
+    """Sampling, saturation, stops and excitation of all `runs`; `noise` is its standard deviation, measured unit."""
+    motions = [motion_of(run, actuator, noise) for run in runs]
+    intervals = np.concatenate([np.diff(run.time) for run in runs])
+    median = float(np.median(intervals))
+    regular = intervals[intervals <= GAP * median]
+    full = np.concatenate([np.abs(motion.duty) >= 0.999 for motion in motions])
+    return DataQuality(
+        rate=float(f"{1.0 / median:.6g}"),
+        jitter=round(float(np.std(regular)), 9),
+        gaps=int(np.count_nonzero(intervals > GAP * median)),
+        saturated_share=float(np.mean(full)),
+        stops_touched=[end for end in ("closed", "open") if _touched(motions, end)],
+        resolution=_resolution(runs),
+        excited=excited(motions),
+        limits=[limit.finding for limit in limits_of(runs, actuator, noise)],
+    )
+
+
+def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Limit]:
+    """Everything that keeps these runs from telling more, the gravest first."""
+    motions = [motion_of(run, actuator, noise) for run in runs]
+    return [
+        *_limits_of_movement(motions, runs, noise),
+        *_limits_of_start(runs),
+        *_limits_of_sampling(runs),
+        *_limits_of_reach(motions),
+    ]
+
+
+def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: float) -> list[Limit]:
+    limits = []
+    duty = np.concatenate([motion.duty for motion in motions])
+    if not any(np.any(motion.moving) for motion in motions):
+        travel = max(float(np.ptp(run.measured)) for run in runs)
+        unit = motions[0].actuator.unit
+        limits.append(
+            Limit(
+                "no_movement",
+                f"The shaft never moves (the signal spans {travel:.3g} {unit}, its noise is {noise:.2g} {unit}):"
+                " nothing can be said about friction, spring, motor, transmission or timing.",
+                decisive=True,
+            )
+        )
+    if np.ptp(duty) == 0.0:
+        limits.append(
+            Limit(
+                "constant_duty",
+                f"The duty is {duty[0]:.3g} throughout: motor, friction and spring cannot be told apart.",
+                decisive=True,
+            )
+        )
+    full = float(np.mean(np.abs(duty) >= 0.999))
+    if full >= SATURATED:
+        limits.append(
+            Limit(
+                "saturated",
+                f"The duty is at its limit for {100 * full:.0f} % of the time: what the shaft does at smaller"
+                " torques, and with it friction and spring, is not in the recording.",
+                decisive=True,
+            )
+        )
+    return limits
+
+
+def _limits_of_start(runs: Sequence[Run]) -> list[Limit]:
+    limits = []
+    late = [run.time[0] for run in runs if run.time[0] > 0.0]
+    if late:
+        limits.append(
+            Limit(
+                "begins_moving",
+                f"The shaft moves when recording begins: the first {max(late):.2f} s, up to its first standstill, are"
+                " left out, for how fast it moved there cannot be told well enough.",
+            )
+        )
+    if any(run.initial_velocity != 0.0 and not Start.of(run.time, run.measured).known for run in runs):
+        limits.append(
+            Limit(
+                "begins_moving",
+                "The shaft moves when recording begins and does not stand still soon: an error of the velocity"
+                " there passes for missing physics.",
+            )
+        )
+    return limits
+
+
+def _limits_of_sampling(runs: Sequence[Run]) -> list[Limit]:
+    limits = []
+    duration = sum(float(run.time[-1] - run.time[0]) for run in runs)
+    intervals = np.concatenate([np.diff(run.time) for run in runs])
+    median = float(np.median(intervals))
+    if duration < SHORT:
+        limits.append(
+            Limit(
+                "short",
+                f"Only {duration:.1f} s are recorded: rare events and anything that grows with time stay unseen,"
+                " and little is left to judge a fit on.",
+            )
+        )
+    if 1.0 / median < SLOW_SAMPLING:
+        limits.append(
+            Limit(
+                "slow_sampling",
+                f"The signal is sampled at {1.0 / median:.0f} Hz: delays and lags of a few milliseconds cannot be"
+                " told apart.",
+            )
+        )
+    lost = float(np.sum(intervals[intervals > GAP * median]))
+    if lost > MOST_GAPS * duration:
+        limits.append(Limit("gaps", f"Samples are missing for {lost:.2f} s: events in these gaps stay unseen."))
+    return limits
+
+
+def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
+    limits = []
+    moved = [motion for motion in motions if np.any(motion.moving)]
+    if not moved:
+        return []
+    directions = {float(sign) for motion in moved for sign in np.sign(motion.velocity[motion.moving])}
+    if len(directions) == 1:
+        way = "opens" if directions == {1.0} else "closes"
+        limits.append(Limit("one_direction", f"The shaft only {way}: friction cannot be told from spring and load."))
+    travel = _span(motions)
+    if travel[1] - travel[0] < SHORT_TRAVEL:
+        reach = math.degrees(travel[1] - travel[0])
+        limits.append(
+            Limit("little_travel", f"The shaft travels {reach:.1f} degrees: what depends on the angle stays unseen.")
+        )
+    actuator = motions[0].actuator
+    for end, stop in (("closed", actuator.lower_stop), ("open", actuator.upper_stop)):
+        if math.isfinite(stop) and not _touched(motions, end):
+            limits.append(
+                Limit(
+                    "closed_stop" if end == "closed" else "open_stop",
+                    f"The {end} stop is never touched: its compliance, and an offset or span error of the sensor"
+                    " there, cannot be seen.",
+                )
+            )
+    return limits
+
+
+def excited(motions: Sequence[Motion]) -> str:
+    """What was moved how far, in words."""
+    lowest, highest = (math.degrees(angle) for angle in _span(motions))
+    duty = np.concatenate([motion.duty for motion in motions])
+    ways = {float(sign) for motion in motions for sign in np.unique(motion.direction) if sign != 0.0}
+    direction = {0: "no movement", 1: "one direction"}.get(len(ways), "both directions")
+    fastest = max(float(np.max(np.abs(motion.velocity), initial=0.0)) for motion in motions)
+    parts = [
+        f"angle {round(lowest)} to {round(highest)} degrees",
+        direction,
+        _counted(sum(motion.reversals.size for motion in motions), "reversal"),
+        _counted(sum(motion.departures.size for motion in motions), "start") + " from standstill",
+        f"up to {fastest:.1f} rad/s",
+        f"duty {np.min(duty):.2f} to {np.max(duty):.2f}",
+    ]
+    if math.isfinite(motions[0].actuator.lower_stop):
+        pulled = any(np.any(motion.closed & (motion.duty < 0.0)) for motion in motions)
+        parts.append(f"negative duty at the closed stop: {'yes' if pulled else 'no'}")
+    return ", ".join(parts)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def _span(motions: Sequence[Motion]) -> tuple[float, float]:
+    """Smallest and largest angle [rad]."""
+    return min(float(m.angle.min()) for m in motions), max(float(m.angle.max()) for m in motions)
+
+
+def _touched(motions: Sequence[Motion], end: str) -> bool:
+    held = [(m.time, m.closed if end == "closed" else m.open) for m in motions]
+    return any(float(np.sum(np.diff(time)[on[1:] & on[:-1]])) >= SEEN for time, on in held)
+
+
+def _resolution(runs: Sequence[Run]) -> float:
+    """Smallest step between measured values, measured unit."""
+    steps = np.diff(np.unique(np.concatenate([run.measured for run in runs])))
+    return float(np.min(steps)) if steps.size else math.nan

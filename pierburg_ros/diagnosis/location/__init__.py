@@ -1,0 +1,1 @@
+"""Where a mismatch is: windows of time, and ranges of what the shaft does."""

@@ -1,0 +1,120 @@
+"""Where in time a mismatch is: windows of the recording with what the shaft does in each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.diagnosis.evidence.motion import Motion
+from pierburg_ros.diagnosis.schema import Location
+
+Signal = NDArray[np.float64]
+
+FAST = 0.4
+"""Share of the fastest travel of the recording from which a movement is called fast."""
+LATE = 0.6
+"""From which share of the recording on windows are called late, where they all are."""
+LONG = 1.0
+"""Length [s] from which a window is described by its beginning and its reach."""
+PRESSING = 0.01
+"""Duty from which the motor is said to press against a stop."""
+
+
+def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, float]]) -> list[Location]:
+    """`windows` (start, end) [s] with what the shaft does, and the share of the energy of `residual` in each.
+
+    `residual` is that of the recalibrated nominal model on the samples of `motion`.
+    """
+    total = float(residual @ residual)
+    late = bool(windows) and min(start for start, _ in windows) > LATE * motion.time[-1]
+    found = []
+    for start, end in windows:
+        inside = _samples(motion, start, end)
+        share = float(residual[inside] @ residual[inside]) / total if total > 0.0 else 0.0
+        regime = doing(motion, start, end) + (", late in the recording" if late else "")
+        found.append(Location(start=start, end=end, share=share, regime=regime))
+    return found
+
+
+def doing(motion: Motion, start: float, end: float) -> str:
+    """What the shaft does from `start` to `end` [s], in words: of a long window how it begins and how far it goes."""
+    if end - start > LONG:
+        beginning = doing(motion, start, start + LONG / 2)
+        return f"{beginning}, then {_reach(motion, _samples(motion, start, end))}"
+    inside = _samples(motion, start, end)
+    if inside.size == 0:
+        return "no sample"
+    if not motion.moving[inside].any():
+        return _standing(motion, inside)
+    return _departing(motion, inside) or _arriving(motion, inside) or _travelling(motion, inside)
+
+
+def _samples(motion: Motion, start: float, end: float) -> NDArray[np.intp]:
+    return np.flatnonzero((motion.time >= start) & (motion.time < end))
+
+
+def _standing(motion: Motion, inside: NDArray[np.intp]) -> str:
+    duty = float(np.median(motion.duty[inside]))
+    for end, on, push in (("closed", motion.closed, -duty), ("open", motion.open, duty)):
+        if on[inside].mean() > 0.5:
+            how = "pressed against" if push > PRESSING else "resting on"
+            return f"{how} the {end} stop"
+    return f"standstill {_near(motion, inside)}"
+
+
+def _departing(motion: Motion, inside: NDArray[np.intp]) -> str | None:
+    """Words for a movement that begins inside, None where none does."""
+    begins = inside[0] + np.flatnonzero(motion.moving[inside][1:] & ~motion.moving[inside][:-1]) + 1
+    if motion.moving[inside[0]] and motion.time_at_rest[inside[0]] > 0.0:
+        begins = np.concatenate([[inside[0]], begins])
+    if begins.size == 0:
+        return None
+    first = int(begins[0])
+    before = max(first - 1, 0)
+    for end, on in (("closed", motion.closed), ("open", motion.open)):
+        if on[before]:
+            pulled = end == "closed" and _pulled_before(motion, first)
+            return f"leaving the {end} stop" + (" after negative duty" if pulled else "")
+    turned = bool(np.isin(motion.reversals, begins).any())
+    what = "reversal" if turned else "first movement after standstill"
+    return f"{what}, {_way(motion, first)} {_near(motion, np.array([first]))}"
+
+
+def _arriving(motion: Motion, inside: NDArray[np.intp]) -> str | None:
+    for end, on in (("closed", motion.closed), ("open", motion.open)):
+        if on[inside[-1]] and not on[inside[0]]:
+            return f"arriving at the {end} stop"
+    return None
+
+
+def _travelling(motion: Motion, inside: NDArray[np.intp]) -> str:
+    velocity = motion.velocity[inside]
+    fastest = float(np.quantile(np.abs(motion.velocity), 0.99))
+    speed = "fast" if float(np.max(np.abs(velocity))) > FAST * fastest else "slow"
+    if np.isin(motion.reversals, inside).any():
+        return f"reversal {_near(motion, inside)}"
+    return f"{speed} {_way(motion, int(inside[np.argmax(np.abs(velocity))]))} {_near(motion, inside)}"
+
+
+def _pulled_before(motion: Motion, first: int) -> bool:
+    """Whether the duty was negative at rest within half a second before sample `first`."""
+    recent = (motion.time >= motion.time[first] - 0.5) & (motion.time < motion.time[first])
+    return bool(np.any(recent & ~motion.moving & (motion.duty < -PRESSING)))
+
+
+def _way(motion: Motion, sample: int) -> str:
+    return "opening" if motion.velocity[sample] > 0.0 else "closing"
+
+
+def _near(motion: Motion, inside: NDArray[np.intp]) -> str:
+    lowest, highest = (math.degrees(f(motion.angle[inside])) for f in (np.min, np.max))
+    if highest - lowest < 8.0:
+        return f"near {round((lowest + highest) / 2)} degrees"
+    return f"between {round(lowest)} and {round(highest)} degrees"
+
+
+def _reach(motion: Motion, inside: NDArray[np.intp]) -> str:
+    return _near(motion, inside) if motion.moving[inside].any() else "at rest"

@@ -1,0 +1,139 @@
+"""Where in state space a mismatch is: ranges of angle, velocity, duty and times in which it gathers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.diagnosis.evidence.motion import Motion
+from pierburg_ros.diagnosis.schema import Regime
+
+Signal = NDArray[np.float64]
+
+BINS = 24
+"""Ranges of about equal time into which a variable is cut."""
+BLOCK = 0.5
+"""Shortest stretch [s] that stays together when the residual is shuffled; see `block_length`."""
+STEP = 0.02
+"""Time step [s] at which the residual's energy is summed up before it is shuffled."""
+SHUFFLES = 250
+CHANCE = 0.01
+"""Largest chance at which a range is reported."""
+CONTRAST = 0.15
+"""Smallest difference of share of residual and share of time at which a range is reported."""
+UNITS = {
+    "angle": "rad",
+    "velocity": "rad/s",
+    "duty": "1",
+    "time_at_rest": "s",
+    "time_since_reversal": "s",
+    "time_since_start": "s",
+    "stop_distance": "rad",
+}
+"""The variables looked at, with their units."""
+
+
+@dataclass(frozen=True)
+class _Range:
+    first: int
+    last: int
+    contrast: float
+
+
+def regimes(motion: Motion, residual: Signal, seed: int = 0) -> list[Regime]:
+    """The range of each variable in which `residual` gathers beyond chance, the clearest first.
+
+    For each variable the range with the largest difference between its share of the residual's energy and its
+    share of time. Its `chance` is how often the energy, cut into blocks that are put in random order, gathers as
+    much anywhere along the same variable.
+    """
+    place = (motion.time / STEP).astype(int)
+    cells, first, count = np.unique(place, return_index=True, return_counts=True)
+    energy = np.add.reduceat(residual**2, first)
+    if not np.any(energy > 0.0):
+        return []
+    time = cells * STEP
+    random = np.random.default_rng(seed)
+    length = block_length(time, energy / count)
+    orders = [_shuffled(time, length, random) for _ in range(SHUFFLES)]
+    found = []
+    for name, values in variables(motion).items():
+        regime = _regime(name, values[first + count // 2], energy, count / place.size, orders)
+        if regime is not None:
+            found.append(regime)
+    return sorted(found, key=lambda regime: regime.share_of_time - regime.share_of_residual)
+
+
+def variables(motion: Motion) -> dict[str, Signal]:
+    """Each variable by name, units in `UNITS`, shape (samples,); a stop distance only where there are two stops."""
+    values = {
+        "angle": motion.angle,
+        "velocity": motion.velocity,
+        "duty": motion.duty,
+        "time_at_rest": motion.time_at_rest,
+        "time_since_reversal": motion.time_since_reversal,
+        "time_since_start": motion.time,
+    }
+    distance = motion.stop_distance
+    return values if distance is None else {**values, "stop_distance": distance}
+
+
+def block_length(time: Signal, energy: Signal) -> float:
+    """Length [s] of blocks that keep what belongs together: twice the correlation time of `energy`, at least 0.5 s.
+
+    No more than a twentieth of the recording, or too few orders would be left.
+    """
+    grid = np.arange(time[0], time[-1], 0.05)
+    series = np.interp(grid, time, energy) - float(np.mean(energy))
+    spectrum = np.abs(np.fft.rfft(series, 2 * series.size)) ** 2
+    correlation = np.fft.irfft(spectrum)[: series.size]
+    below = np.flatnonzero(correlation < correlation[0] / np.e)
+    correlated = 0.05 * float(below[0]) if below.size else float(time[-1])
+    return float(np.clip(2.0 * correlated, min(BLOCK, time[-1] / 20.0), time[-1] / 20.0))
+
+
+def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArray[np.intp]:
+    """Sample numbers with blocks of `length` [s] in random order."""
+    block = (time / length).astype(int)
+    rank = random.permutation(block[-1] + 1)
+    return np.argsort(rank[block], kind="stable")
+
+
+def _regime(
+    name: str, values: Signal, energy: Signal, weight: Signal, orders: Sequence[NDArray[np.intp]]
+) -> Regime | None:
+    """The range of `values` in which `energy` gathers, None where by chance or not at all; `weight` is time."""
+    edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+    if edges.size < 3:
+        return None
+    place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    time = np.asarray(np.bincount(place, weights=weight, minlength=edges.size - 1), dtype=float)
+    best = _gathered(place, energy, time)
+    if best.contrast < CONTRAST:
+        return None
+    exceeded = sum(_gathered(place, energy[order], time).contrast >= best.contrast for order in orders)
+    chance = (1 + exceeded) / (1 + len(orders))
+    if chance > CHANCE:
+        return None
+    inside = (place >= best.first) & (place <= best.last)
+    return Regime(
+        variable=name,
+        range=(float(edges[best.first]), float(edges[best.last + 1])),
+        unit=UNITS[name],
+        share_of_residual=float(energy[inside].sum() / energy.sum()),
+        share_of_time=float(weight[inside].sum()),
+        chance=chance,
+    )
+
+
+def _gathered(place: NDArray[np.intp], energy: Signal, time: Signal) -> _Range:
+    """The run of bins with the largest share of energy less share of time."""
+    share = np.bincount(place, weights=energy, minlength=time.size) / energy.sum()
+    before = np.concatenate([[0.0], np.cumsum(share - time)])
+    lowest = np.minimum.accumulate(before)
+    last = int(np.argmax(before[1:] - lowest[:-1]))
+    first = int(np.argmin(before[: last + 1]))
+    return _Range(first, last, float(before[last + 1] - before[first]))

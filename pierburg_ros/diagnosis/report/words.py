@@ -1,0 +1,135 @@
+"""The diagnosis in words: why an effect, what it means, what to record next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pierburg_ros.diagnosis.evidence.quality import Limit
+from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
+from pierburg_ros.effects import EFFECT
+
+SEPARATES = {
+    "armature_resistance": "measure the motor resistance at standstill, or log the motor current",
+    "torque_constant": "log the motor current",
+    "supply_voltage": "log the supply voltage",
+    "spring_preload": "run against both stops and return at duty 0",
+    "spring_stiffness": "run against both stops",
+    "coulomb_friction": "move slowly in both directions over the same angles",
+}
+"""What tells a base parameter from what looks like it."""
+
+
+def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
+    """A value with its interval, for a sentence."""
+    if estimate.value is None:
+        return f"{name.replace('_', ' ')} unknown"
+    unit = "" if estimate.unit == "1" else f" {estimate.unit}"
+    interval = f" ({estimate.ci95[0]:.4g} to {estimate.ci95[1]:.4g})" if estimate.ci95 else ""
+    return f"{name.replace('_', ' ')} {estimate.value:.4g}{unit}{interval}"
+
+
+def effect_explanation(
+    effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], reason: str
+) -> str:
+    """Why the effect is named, with its numbers and what it cannot be told from."""
+    declared = EFFECT[effect]
+    values = ", ".join(quantity(name, estimate) for name, estimate in parameters.items())
+    text = f"{declared.sentence} It shows in {declared.shows_in}: {values}. {reason}"
+    if ties:
+        text += f" These recordings cannot tell it from {_either(ties)}."
+    return text
+
+
+def by_evidence(gain: float) -> str:
+    """Why an effect is named that the best explanation needs."""
+    return (
+        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
+        "independent samples."
+    )
+
+
+def by_grid() -> str:
+    """Why steps of the converter are named."""
+    return "All samples lie on this grid, which is coarse beside the noise."
+
+
+def by_recordings_left_out(without: float, beside: float, unit: str, helped: int, parts: int) -> str:
+    """Why an effect is named where no explanation accounts for all."""
+    return (
+        f"On recordings left out of the fit the error is {without:.3g} {unit} without it and {beside:.3g} {unit} "
+        f"with it; it helps in {helped} of {parts} parts. Other physics may stand behind it."
+    )
+
+
+def untestable(mark: float) -> str:
+    """Why an effect cannot be seen."""
+    return (
+        f"at a plausible strength it would change these recordings by a chi-squared of {mark:.2g} at most "
+        "once the other parameters are fitted again, which is within the noise"
+    )
+
+
+def summary(
+    verdict: Verdict,
+    effects: Sequence[Effect],
+    parameters: Mapping[str, BaseParameter],
+    changes: Sequence[Change],
+    fit: FitQuality,
+    unit: str,
+) -> str:
+    """One paragraph for a technician."""
+    before, after, floor = fit.validation.nominal_rmse, fit.validation.final_rmse, fit.noise_floor
+    errors = (
+        f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
+        f"the noise is {floor:.2g} {unit}."
+    )
+    drifts = [quantity(name, p) + f" instead of {p.nominal:.4g}" for name, p in parameters.items() if p.drifted]
+    dated = [
+        f"{c.parameter.replace('_', ' ')} changes at {c.time:.1f} s from {c.before:.4g} to {c.after:.4g}"
+        for c in changes
+    ]
+    if verdict == "consistent":
+        return f"The model as described explains the recording down to its noise. {errors}"
+    if verdict == "parameter_drift":
+        return f"No physics is missing: {'; '.join(dated or drifts)}. {errors}"
+    named = " ".join(EFFECT[effect.id].sentence for effect in effects)
+    also = f" Besides: {'; '.join(drifts)}." if drifts else ""
+    if verdict == "missing_physics":
+        return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
+    helped = f" What helps on recordings left out is {_listed([e.id for e in effects])}. {named}" if effects else ""
+    return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
+
+
+def advice(
+    verdict: Verdict,
+    effects: Sequence[Effect],
+    parameters: Mapping[str, BaseParameter],
+    hidden: Sequence[NotTestable],
+    limits: Sequence[Limit],
+) -> list[str]:
+    """What to record next, most useful first."""
+    steps = [limit.record for limit in limits]
+    for effect in effects:
+        for tie in effect.indistinguishable_from:
+            steps.append(_separating(effect.id, tie))
+    for name, parameter in parameters.items():
+        for tie in parameter.indistinguishable_from:
+            steps.append(_separating(name, tie))
+    if verdict == "unexplained":
+        steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
+    steps += [f"To see {item.id}: {item.record}." for item in hidden]
+    return list(dict.fromkeys(steps))
+
+
+def _separating(name: str, tie: Sequence[str]) -> str:
+    means = [SEPARATES[item] for item in (name, *tie) if item in SEPARATES]
+    means += [EFFECT[item].record for item in (name, *tie) if item in EFFECT]
+    return f"To tell {name} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means))}."
+
+
+def _either(ties: Sequence[Sequence[str]]) -> str:
+    return ", or ".join(" with ".join(tie) for tie in ties)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return " and ".join(name.replace("_", " ") for name in names)

@@ -1,0 +1,1 @@
+"""Which explanations there are, and how well each fits."""

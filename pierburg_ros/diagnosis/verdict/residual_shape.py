@@ -1,0 +1,218 @@
+"""The torque that no catalogue effect explains, as a shape over angle and velocity fitted to the measured signal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from pierburg_ros.diagnosis.evidence.data import EvidenceData, held_back, rms
+from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
+from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.evidence.stretches import REMEMBERED, restarted
+from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.plant import Model
+
+Signal = NDArray[np.float64]
+
+ANGLES = 7
+"""Nodes over the angle."""
+CREEP = 0.1
+"""The innermost velocity nodes stand this far to either side of 0 [rad/s], for friction to change between them."""
+SPREAD = 0.05
+"""Prior standard deviation of a node [N.m], a quarter of the sliding friction: keeps unvisited nodes small."""
+STEEPNESS = 0.02
+"""Prior standard deviation of the difference of neighbouring nodes [N.m]: keeps the shape smooth."""
+WEIGHT = 5.0
+"""Residuals that repeat themselves over stretches count less than their number: so much more the prior weighs."""
+LARGEST = 1.0
+"""A node stays within so many N.m."""
+STEP = 0.002
+"""Difference step of a node [N.m]."""
+ITERATIONS = 4
+STRETCH = 1.0
+"""Length of the stretches that are simulated each from the measured state [s]."""
+STRETCHES = 24
+"""Into how many stretches of time the missing torque is averaged."""
+
+
+Way = Callable[[EvidenceData], Model]
+"""A way to calibrate the model that the shape stands on, to the training samples."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A model with its residual torque, and what that gains on samples that did not train it.
+
+    `base` is the model without it. `before` and `after` are RMSE over whole runs on the choosing samples, measured
+    unit, of the base and of the shaped model. `over_time` holds the middle [s] of each stretch of the first
+    recording and the mean torque [N.m] that the base lacks there, not a number at rest.
+    """
+
+    model: Model
+    base: Model
+    before: float
+    after: float
+    words: str
+    over_time: tuple[Signal, Signal]
+
+
+def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str], None] = lambda _: None) -> Shape:
+    """The residual torque over angle and velocity that makes a simulation fit the training samples.
+
+    Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held
+    back from it, with or without a shape: parameters fitted to whole runs without the missing physics may have
+    been bent towards the few standstills that it has displaced.
+    """
+    with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
+        way = ways[0]
+        if len(ways) > 1:
+            progress("ways to calibrate the model below a residual torque")
+            errors = list(pool.map(lambda way: _left_out(data, way), ways))
+            way = ways[int(np.argmin(errors))]
+        progress("residual torque over angle and velocity")
+        base = way(data)
+        model = _fitted(data, base)
+    grid = model.residual_torque or {}
+    over_time = _over_time(data, base)
+    words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
+    before, after = (rms(data.residual(m)[data.choosing]) * data.noise for m in (base, model))
+    return Shape(model, base, before, after, words, over_time)
+
+
+def _left_out(data: EvidenceData, way: Way) -> float:
+    """Error on training blocks held back, of the model that `way` calibrates or of its shaped one, the lower.
+
+    The product of the RMSE over whole runs, where a few standstills at the wrong angle can decide, and over
+    stretches, which do not see what a model forgets slowly.
+    """
+    inner = held_back(data)
+    stretches, trained = restarted(data, STRETCH), restarted(inner, STRETCH).training
+    base = way(inner)
+
+    def error(model: Model) -> float:
+        whole = data.residual(model)[data.training & ~inner.training]
+        short = stretches.residual(model)[stretches.training & ~trained]
+        return math.prod(rms(np.nan_to_num(residual, nan=1e3)) for residual in (whole, short))
+
+    return min(error(base), error(_fitted(inner, base)))
+
+
+def _fitted(data: EvidenceData, base: Model) -> Model:
+    """`base` with its best shape.
+
+    Bilinear between about 7 x 6 nodes, damped Gauss-Newton on the signal simulated in stretches of 1 s, each from
+    the measured state, so that a slip at the wrong moment is forgotten after a second. Large errors count by their
+    logarithm. A prior keeps the shape small and smooth.
+    """
+    stretches = data if REMEMBERED.intersection(base.active_effects) else restarted(data, STRETCH)
+    training = stretches.training
+    angle, velocity = nodes(data)
+    prior = WEIGHT * _prior(angle.size, velocity.size)
+
+    def shaped(point: Signal) -> Model:
+        torque = point.reshape(angle.size, velocity.size)
+        return base.with_residual({"angle": angle, "velocity": velocity, "torque": torque})
+
+    def error(candidate: Model) -> Signal:
+        return np.nan_to_num(stretches.residual(candidate)[training], nan=1e3, posinf=1e3, neginf=-1e3)
+
+    scale = rms(error(base))
+
+    def residual(point: Signal) -> Signal:
+        misfit = error(shaped(point)) / scale
+        return np.concatenate([np.sign(misfit) * np.log1p(np.abs(misfit)), prior @ point])
+
+    size = angle.size * velocity.size
+    bound = np.full(size, LARGEST)
+    solution = minimise(residual, np.zeros(size), -bound, bound, np.full(size, STEP), ITERATIONS, 3e-3)
+    return shaped(solution.point)
+
+
+def nodes(data: EvidenceData) -> tuple[Signal, Signal]:
+    """Nodes of angle [rad] and velocity [rad/s], placed by how often the data visit them."""
+    motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
+    angles = np.concatenate([motion.angle[motion.moving] for motion in motions])
+    speeds = np.concatenate([motion.velocity[motion.moving] for motion in motions])
+    angle = _apart(np.quantile(angles, np.linspace(0.01, 0.99, ANGLES)), 0.03)
+    sides = []
+    for side in (speeds[speeds > CREEP], -speeds[speeds < -CREEP]):
+        outer = np.quantile(side, (0.5, 0.95)) if side.size else np.empty(0)
+        sides.append(_apart(np.concatenate([[CREEP], outer]), 0.05))
+    return angle, np.concatenate([-sides[1][::-1], sides[0]])
+
+
+def _apart(values: Signal, least: float) -> Signal:
+    """Increasing `values` without those closer than `least` to the one kept before."""
+    kept = [float(values[0])]
+    for value in values[1:]:
+        if value - kept[-1] >= least:
+            kept.append(float(value))
+    return np.array(kept)
+
+
+def _prior(angles: int, velocities: int) -> Signal:
+    """Rows whose product with the nodes is a residual in standard deviations: each node, and neighbours' differences.
+
+    Nodes on either side of velocity 0 are not held together: friction may differ between directions.
+    """
+    size = angles * velocities
+    number = np.arange(size).reshape(angles, velocities)
+    middle = velocities // 2
+    along = np.stack([number[:-1].ravel(), number[1:].ravel()], axis=1)
+    across = [number[:, [j, j + 1]] for j in range(velocities - 1) if j + 1 != middle]
+    pairs = np.concatenate([along, *across])
+    differences = np.zeros((pairs.shape[0], size))
+    rows = np.arange(pairs.shape[0])
+    differences[rows, pairs[:, 0]], differences[rows, pairs[:, 1]] = -1.0, 1.0
+    return np.concatenate([np.eye(size) / SPREAD, differences / STEEPNESS])
+
+
+def _over_time(data: EvidenceData, model: Model) -> tuple[Signal, Signal]:
+    """Middle of each stretch of the first run [s] and the mean torque missing there [N.m], nan where at rest."""
+    run = data.runs[0]
+    missing = missing_torque(data, run, model)
+    edges = np.linspace(run.time[0], run.time[-1], STRETCHES + 1)
+    place = np.clip(np.searchsorted(edges, missing.time, side="right") - 1, 0, STRETCHES - 1)
+    count = np.bincount(place, minlength=STRETCHES)
+    total = np.bincount(place, weights=missing.torque, minlength=STRETCHES)
+    mean = np.divide(total, count, out=np.full(STRETCHES, math.nan), where=count >= 5)
+    return (edges[:-1] + edges[1:]) / 2 - run.time[0], mean
+
+
+def described(angle: Signal, velocity: Signal, torque: Signal) -> str:
+    """The shape in words: where it is strongest either way, and how it depends on angle and direction."""
+    parts = []
+    for sign, verb in ((1.0, "closes"), (-1.0, "opens")):
+        row, column = np.unravel_index(int(np.argmax(sign * torque)), torque.shape)
+        if sign * torque[row, column] > 0.0:
+            parts.append(
+                f"{abs(torque[row, column]):.3f} N.m that {verb} at {math.degrees(angle[row]):.0f} degrees and"
+                f" {velocity[column]:.2g} rad/s"
+            )
+    opening, closing = (float(torque[:, side].mean()) for side in (velocity > 0.0, velocity < 0.0))
+    drag = (opening - closing) / 2.0
+    resists = "resists" if drag >= 0.0 else "drives"
+    slope = float(np.polyfit(angle, torque.mean(axis=1), 1)[0]) if angle.size > 1 else 0.0
+    return (
+        f"up to {' and '.join(parts) or 'nothing'}; on average {abs(drag):.3f} N.m that {resists} the movement,"
+        f" and {slope:+.3f} N.m per rad of opening"
+    )
+
+
+def described_over_time(time: Signal, torque: Signal) -> str:
+    """How the missing torque goes over the recording, in words."""
+    known = np.isfinite(torque)
+    if np.count_nonzero(known) < 4:
+        return "too little movement to say how it goes over time"
+    slope, offset = np.polyfit(time[known], torque[known], 1)
+    left = torque[known] - slope * time[known] - offset
+    rise, scatter = float(slope * (time[-1] - time[0])), float(np.std(left))
+    if abs(rise) > 2.0 * scatter:
+        return f"over the recording it {'grows' if rise > 0.0 else 'falls'} by {abs(rise):.3f} N.m"
+    return f"over the recording it varies by {scatter:.3f} N.m without a trend"

@@ -1,0 +1,1 @@
+"""Parameters of a model from recordings: the one engine of identification and diagnosis."""

@@ -1,0 +1,1 @@
+"""Experiments: excitation recipes, and the sequence that tells two explanations apart."""

@@ -1,0 +1,89 @@
+"""The four numbers that sliding motion shows of a spring-loaded actuator, and how well a fit knows them.
+
+time_constant w = gain duty - angle - preload_angle - friction_angle sign(w), equations (5) and (6) of
+the paper without inductance and inertia: everything that duty and angle alone can tell between the stops.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.estimation.fit import Fit
+from pierburg_ros.estimation.uncertainty import RANK
+from pierburg_ros.plant import Model
+
+UNITS = {"time_constant": "s", "gain": "rad", "preload_angle": "rad", "friction_angle": "rad"}
+DUTY_UNITS = {"D_c": "1", "D_pre": "1"}
+
+
+@dataclass(frozen=True)
+class Lump:
+    """A derived value with its 95 % interval, None where the recording does not fix it."""
+
+    value: float
+    unit: str
+    ci95: tuple[float, float] | None
+
+
+def lumps(model: Model) -> dict[str, float]:
+    """Time constant [s], gain, preload angle and friction angle [rad] of a spring-loaded model."""
+    value = model.values
+    stiffness, resistance = value["spring_stiffness"], value["armature_resistance"]
+    constant = value["gear_ratio"] * value["torque_constant"]
+    braking = constant**2 / resistance + value["viscous_friction.coefficient"]
+    return {
+        "time_constant": braking / stiffness,
+        "gain": constant * value["supply_voltage"] / (resistance * stiffness),
+        "preload_angle": value["spring_preload"] / stiffness,
+        "friction_angle": value["coulomb_friction"] / stiffness,
+    }
+
+
+def duties(model: Model) -> dict[str, float]:
+    """Duties that overcome friction, D_c, and preload, D_pre, by equation (9) [1]."""
+    lump = lumps(model)
+    return {
+        "D_c": lump["friction_angle"] / lump["gain"],
+        "D_pre": lump["preload_angle"] / lump["gain"],
+    }
+
+
+def fitted_lumps(fitted: Fit) -> dict[str, Lump]:
+    """The lumps of a fit; known even where the parameters behind them are tied."""
+    return _derived(fitted, lumps, UNITS)
+
+
+def fitted_duties(fitted: Fit) -> dict[str, Lump]:
+    """D_c and D_pre of a fit."""
+    return _derived(fitted, duties, DUTY_UNITS)
+
+
+def _derived(fitted: Fit, quantities: Callable[[Model], dict[str, float]], units: dict[str, str]) -> dict[str, Lump]:
+    """Positive `quantities` of the fitted model, their intervals by the slopes of their logarithms."""
+    values, slopes = quantities(fitted.model), _relative_slopes(fitted, quantities)
+    _, lengths, directions = np.linalg.svd(fitted.jacobian, full_matrices=False)
+    unknown = directions[lengths <= RANK * lengths[0]]
+    fixed = np.linalg.norm(slopes @ unknown.T, axis=1) < 1e-3
+    variances = np.einsum("ij,jk,ik->i", slopes, fitted.uncertainty.covariance, slopes)
+    widths = np.exp(fitted.uncertainty.factor * np.sqrt(variances))
+    return {
+        name: Lump(value, units[name], (float(value / width), float(value * width)) if known else None)
+        for (name, value), width, known in zip(values.items(), widths, fixed, strict=True)
+    }
+
+
+def _relative_slopes(fitted: Fit, quantities: Callable[[Model], dict[str, float]]) -> NDArray[np.float64]:
+    """Derivative of the logarithm of each quantity to the coordinates, shape (quantities, names)."""
+    step = 1e-6
+    rows = []
+    for offset in step * np.eye(len(fitted.names)):
+        ahead, behind = (
+            np.log(list(quantities(fitted.scaling.model(fitted.coordinates + sign * offset)).values()))
+            for sign in (1.0, -1.0)
+        )
+        rows.append((ahead - behind) / (2.0 * step))
+    return np.asarray(np.array(rows).T)

@@ -1,0 +1,1 @@
+"""What the nodes do besides ROS: imports no rclpy."""

@@ -1,0 +1,1 @@
+"""Between motor and shaft: rigid teeth, teeth with play, teeth that give."""

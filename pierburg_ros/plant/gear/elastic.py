@@ -1,0 +1,262 @@
+"""Teeth that give: the motor with its inertia on one side of a spring and damper, the shaft without on the other.
+
+The motor is one linear piece under the torque of the teeth; the shaft, of first order, follows its travel. The
+step is shortened until what the linear piece leaves out at its end misleads the motor by less than is allowed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from pierburg_ros.effects import presliding
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.gear import shaft
+from pierburg_ros.plant.motion.body import PARTED, Line, after, balance, error, piece, share, torque_at, turn
+from pierburg_ros.plant.motion.events import SHORTEST, allowed, lower, motor_onset, next_step, shorter, upper
+from pierburg_ros.plant.torques.drive import relaxed_current
+from pierburg_ros.plant.torques.friction import level
+
+FLOOR = 1e-5
+"""Shortest time constant of the twist [s]; stands in for a damping of 0."""
+EVEN = 0.02
+"""Longest step of a shaft that stands, as a share of the period of a pulsating load."""
+
+
+class Sides(NamedTuple):
+    """Where a step has brought the two sides: travel [rad], velocity [rad/s], current [A], teeth [N.m], error [rad]."""
+
+    motor_travel: float
+    motor_velocity: float
+    current: float
+    travel: float
+    velocity: float
+    teeth: float
+    wrong: float
+
+
+class Grip(NamedTuple):
+    """What holds the shaft: the teeth's deflection [rad], their stiffness and damping, and the shaft's own resistance.
+
+    N.m/rad and N.m.s/rad, 0 where the teeth do not touch; N.m at rest, N.m/rad, N.m.s/rad.
+    """
+
+    deflection: float
+    stiffness: float
+    damping: float
+    resisting: float
+    bending: float
+    viscous: float
+
+
+@kernel
+def _deflection(p, twist):
+    """Deflection of the teeth [rad] at `twist` [rad] between motor and shaft, 0 within the play."""
+    if twist > 0.0:
+        return twist
+    return min(twist + p.backlash.gap, 0.0)
+
+
+@kernel
+def _grip(p, s, twist, rate, angle, velocity, bristle, time):
+    """What holds the shaft at `twist` [rad] growing with `rate` [rad/s]; across a play the teeth do not pull."""
+    gear = p.gear_compliance
+    deflection = _deflection(p, twist)
+    resisting = bending = viscous = 0.0
+    if s.direction != 0.0:
+        resisting, bending, viscous = shaft.resistance(p, s, angle, velocity, bristle, time)
+    pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
+    if p.backlash.gap > 0.0 and not pushes:
+        return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.LEAST_DAMPING))
+    damping = max(gear.damping, FLOOR * gear.stiffness - viscous) if s.direction != 0.0 else gear.damping
+    return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous)
+
+
+@kernel
+def _velocity(s, grip, motor_velocity):
+    """Velocity of the shaft [rad/s]: where it slides its torques balance at once."""
+    if s.direction == 0.0:
+        return 0.0
+    push = grip.stiffness * grip.deflection + grip.damping * motor_velocity - grip.resisting
+    return push / (grip.damping + grip.viscous)
+
+
+@kernel
+def _teeth(grip, motor_velocity, velocity):
+    """Torque from motor to shaft [N.m]."""
+    return grip.stiffness * grip.deflection + grip.damping * (motor_velocity - velocity)
+
+
+@kernel
+def _felt(s, grip):
+    """Stiffness [N.m/rad] and damping [N.m.s/rad] that the motor feels, the shaft giving way."""
+    if s.direction == 0.0 or grip.stiffness == 0.0:
+        return grip.stiffness, grip.damping
+    stiffness = grip.stiffness * grip.bending / (grip.stiffness + grip.bending)
+    return stiffness, grip.damping * grip.viscous / (grip.damping + grip.viscous)
+
+
+@kernel
+def _follow(s, grip, step, motor_velocity):
+    """Travel of the shaft [rad] and its velocity [rad/s] after `step` [s] of the motor turning evenly."""
+    start = _velocity(s, grip, motor_velocity)
+    rate = _rate(grip)
+    if s.direction == 0.0 or abs(rate) * step < 1e-9:
+        return start * step, start
+    even = grip.stiffness * motor_velocity / (grip.stiffness + grip.bending)
+    faded = math.expm1(-rate * step)
+    return even * step - (start - even) * faded / rate, start + (start - even) * faded
+
+
+@kernel
+def _rate(grip):
+    """Rate [1/s] at which the shaft follows the motor."""
+    return (grip.stiffness + grip.bending) / (grip.damping + grip.viscous)
+
+
+@kernel
+def _astray(grip, reached, step, moved, velocity):
+    """Angle [rad] by which the shaft may be wrong, from the resistance that the straight line misses at the end."""
+    missed = reached.resisting - grip.resisting - grip.bending * moved
+    missed += (reached.viscous - grip.viscous) * velocity
+    rate = _rate(grip)
+    memory = min(step, 1.0 / rate) if rate > 0.0 else step
+    return 0.5 * abs(missed) / (grip.damping + grip.viscous) * memory
+
+
+@kernel
+def _motor(p, s, angle, velocity, time, amperes, bristle):
+    """Net torque on the motor but for the teeth, as a straight line."""
+    return balance(p, s, PARTED, angle, velocity, s.motor_direction, time, amperes, bristle)
+
+
+@kernel
+def _motor_stands(p, s):
+    return share(p, PARTED) > 0.0 and s.motor_direction == 0.0
+
+
+@kernel
+def _motor_bristle(p, s, travel):
+    if p.presliding.stiffness == 0.0 or travel == 0.0:
+        return s.motor_bristle
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    friction = level(p, s.motor_direction, s.motor_velocity, s.motor_angle, motor)[0]
+    return presliding.moved(p.presliding, s.motor_bristle, friction, travel)
+
+
+@kernel
+def _line(p, s):
+    """The grip on the shaft now, and the net torque on the motor as a straight line, shaft following."""
+    twist = s.motor_angle - s.angle
+    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, s.velocity, s.bristle, s.time)
+    free = _motor(p, s, s.motor_angle, s.motor_velocity, s.time, s.current, s.motor_bristle)
+    stiffness, damping = _felt(s, grip)
+    force = free.force - _teeth(grip, s.motor_velocity, _velocity(s, grip, s.motor_velocity))
+    return grip, Line(force, free.slope + damping, free.stiffness + stiffness, free.rate, free.gain)
+
+
+@kernel
+def _motor_piece(p, s, line, step):
+    """Travel [rad], velocity [rad/s] and current [A] of the motor after `step` [s]."""
+    if not _motor_stands(p, s):
+        return piece(p, s, step, s.motor_velocity, line)
+    if p.armature_inductance.inductance == 0.0:
+        return 0.0, 0.0, s.current
+    return 0.0, 0.0, relaxed_current(p, s, step)
+
+
+@kernel
+def _trial(p, s, grip, line, step):
+    """Where `step` [s] would bring the two sides."""
+    travel, ended, amperes = _motor_piece(p, s, line, step)
+    moved, velocity = _follow(s, grip, step, travel / step)
+    time = s.time + step
+    bristle = shaft.bristle_after(p, s, moved) if s.direction != 0.0 else s.bristle
+    twist = s.motor_angle + travel - s.angle - moved
+    reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time)
+    velocity = _velocity(s, reached, ended)
+    teeth = _teeth(reached, ended, velocity)
+    actual = _motor(p, s, s.motor_angle + travel, ended, time, amperes, _motor_bristle(p, s, travel)).force - teeth
+    expected = after(p, line, step, travel, ended - s.motor_velocity, amperes - s.current)
+    wrong = 0.0 if _motor_stands(p, s) else error(p, s, line, step, actual, expected)
+    if s.direction != 0.0:
+        wrong += _astray(grip, reached, step, moved, velocity)
+    return Sides(travel, ended, amperes, moved, velocity, teeth, wrong)
+
+
+@kernel
+def _breaks(p, s, sides, step):
+    """Whether, `step` [s] on, a held side has broken loose or a sliding one has passed rest or a stop."""
+    if sides.motor_velocity * s.motor_direction < 0.0:
+        return True
+    if _motor_stands(p, s) and motor_onset(p, s, sides.teeth, sides.current) != 0.0:
+        return True
+    if s.direction == 0.0:
+        return shaft.onset(p, s, sides.teeth, s.angle, s.time + step) != 0.0
+    angle = s.angle + sides.travel
+    return sides.velocity * s.direction < 0.0 or angle > upper(p) or angle < lower(p)
+
+
+@kernel
+def move(p, s, remaining):
+    """Move for at most `remaining` [s], up to the next event; gives the time used."""
+    _set_directions(p, s)
+    grip, line = _line(p, s)
+    step = min(remaining, max(s.step, SHORTEST), turn(p, s, s.motor_velocity, line))
+    if p.external_load.frequency > 0.0:
+        step = max(min(step, EVEN / p.external_load.frequency), SHORTEST)
+    while True:
+        sides = _trial(p, s, grip, line, step)
+        excess = max(sides.wrong / allowed(sides.motor_travel), abs(sides.motor_travel) / p.finest)
+        if not excess > 1.0 or step <= SHORTEST:
+            break
+        step = shorter(step, excess)
+    s.step = next_step(s.step, step, remaining, excess)
+    breaks = step > SHORTEST and _breaks(p, s, sides, step)
+    if breaks:
+        step = _breaking_time(p, s, grip, line, step)
+        sides = _trial(p, s, grip, line, step)
+    _take(p, s, sides, step, breaks)
+    return step
+
+
+@kernel
+def _set_directions(p, s):
+    """Decide whether the standing sides begin to move."""
+    twist = s.motor_angle - s.angle
+    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, 0.0, s.bristle, s.time)
+    if s.direction == 0.0:
+        s.direction = shaft.onset(p, s, _teeth(grip, s.motor_velocity, 0.0), s.angle, s.time)
+    if _motor_stands(p, s):
+        s.motor_direction = motor_onset(p, s, _teeth(grip, 0.0, s.velocity), s.current)
+
+
+@kernel
+def _breaking_time(p, s, grip, line, step):
+    early, late = 0.0, step
+    while late - early > SHORTEST:
+        middle = 0.5 * (early + late)
+        if _breaks(p, s, _trial(p, s, grip, line, middle), middle):
+            late = middle
+        else:
+            early = middle
+    return late
+
+
+@kernel
+def _take(p, s, sides, step, breaks):
+    """Accept a step."""
+    if s.direction != 0.0:
+        s.bristle = shaft.bristle_after(p, s, sides.travel)
+    s.motor_bristle = _motor_bristle(p, s, sides.motor_travel)
+    s.motor_angle += sides.motor_travel
+    s.motor_velocity, s.current = sides.motor_velocity, sides.current
+    if sides.motor_velocity * s.motor_direction < 0.0:
+        s.motor_velocity = s.motor_direction = 0.0
+    angle = s.angle + sides.travel
+    s.angle = min(max(angle, lower(p)), upper(p))
+    rests = breaks and (sides.velocity * s.direction <= 0.0 or s.angle != angle)
+    s.velocity = sides.velocity
+    if rests:
+        s.direction = s.velocity = 0.0
+    s.time += step

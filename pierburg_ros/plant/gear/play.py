@@ -1,0 +1,163 @@
+"""Rigid teeth with play between them: on the opening flank, on the closing flank, or parted.
+
+Nordin, Gutman, Automatica 38 (2002) 1633-1649. The inertia is on the motor side; flanks meet without a rebound
+and the shaft, which has no inertia, takes up the velocity of the motor.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.gear import shaft
+from pierburg_ros.plant.gear.rigid import slide_joined
+from pierburg_ros.plant.motion.body import JOINED, PARTED, balance, piece
+from pierburg_ros.plant.motion.events import SHORTEST, hold, lower, motor_onset, onset, slide, upper
+from pierburg_ros.plant.torques.drive import relaxed_current
+
+TURNS = 1e-5
+"""Motor and shaft that both move on their own do so in turns of this length [s]; 10 rad/s is 0.1 mrad a turn."""
+WATCH = 2e-4
+"""A shaft that stands between parted teeth is looked at again after this time [s] where its load changes."""
+
+
+@kernel
+def move(p, s, remaining):
+    """Move for at most `remaining` [s], up to the next event; gives the time used."""
+    if s.flank == 0:
+        return _move_parted(p, s, remaining)
+    if s.direction == 0.0:
+        leaving = _leaving(p, s)
+        if leaving != 0.0:
+            _part(s, leaving)
+            return 0.0
+        s.direction = onset(p, s, s.time, s.current)
+        if s.direction == 0.0:
+            return hold(p, s, remaining)
+    if _torn(p, s, s.angle, s.velocity, s.bristle, s.time):
+        _part(s, s.direction)
+        return 0.0
+    return slide_joined(p, s, _tearing_time(p, s, remaining))
+
+
+@kernel
+def _part(s, direction):
+    """Let the motor go on alone, in `direction`."""
+    s.flank = 0
+    s.motor_direction = direction
+
+
+@kernel
+def _leaving(p, s):
+    """Direction in which a standing motor leaves its flank while the shaft stays; 0 if it does not."""
+    direction = motor_onset(p, s, 0.0, s.current)
+    if direction * s.flank < 0.0 and shaft.onset(p, s, 0.0, s.angle, s.time) == 0.0:
+        return direction
+    return 0.0
+
+
+@kernel
+def _torn(p, s, angle, velocity, bristle, time):
+    """Whether the sliding shaft would have to be pulled by a flank that can only push."""
+    torque, _, viscous = shaft.resistance(p, s, angle, velocity, bristle, time)
+    return (torque + viscous * velocity) * s.flank < 0.0
+
+
+@kernel
+def _tearing_time(p, s, remaining):
+    """How long [s] the flanks stay together: not longer than one internal step is good for."""
+    line = balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.bristle)
+    late = remaining if p.plain else min(remaining, max(s.step, SHORTEST))
+    if not _tears(p, s, line, late):
+        return late
+    early = 0.0
+    while late - early > SHORTEST:
+        middle = 0.5 * (early + late)
+        if _tears(p, s, line, middle):
+            late = middle
+        else:
+            early = middle
+    return late
+
+
+@kernel
+def _tears(p, s, line, step):
+    travel, velocity, _ = piece(p, s, step, s.velocity, line)
+    bristle = shaft.bristle_after(p, s, travel)
+    return _torn(p, s, s.angle + travel, velocity, bristle, s.time + step)
+
+
+@kernel
+def _move_parted(p, s, remaining):
+    if s.direction == 0.0:
+        s.direction = shaft.onset(p, s, 0.0, s.angle, s.time)
+    if s.motor_direction == 0.0:
+        s.motor_direction = motor_onset(p, s, 0.0, s.current)
+    if s.direction != 0.0:
+        return _take_turns(p, s, min(remaining, TURNS))
+    if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
+        remaining = min(remaining, WATCH)
+    if s.motor_direction == 0.0:
+        return _wait(p, s, remaining)
+    used, meets = _turn_motor(p, s, s.angle - p.backlash.gap, s.angle, remaining)
+    if meets:
+        _meet(p, s, 1 if s.motor_direction > 0.0 else -1)
+    return used
+
+
+@kernel
+def _turn_motor(p, s, low, high, remaining):
+    """Turn the motor alone between `low` and `high` [rad]; gives the time used and whether it got to either."""
+    used, s.motor_angle, velocity, rests, meets = slide(
+        p, s, PARTED, s.motor_angle, s.motor_velocity, s.motor_direction, low, high, remaining
+    )
+    s.motor_velocity = velocity
+    if rests:
+        s.motor_direction = 0.0
+    return used, meets
+
+
+@kernel
+def _take_turns(p, s, step):
+    """Motor and shaft on their own for a short `step` [s]; the shaft gives way to the flanks. Gives the time used."""
+    if s.motor_direction == 0.0:
+        used = _wait(p, s, step)
+    else:
+        used, _ = _turn_motor(p, s, -math.inf, math.inf, step)
+    shaft.drift(p, s, used)
+    apart = s.angle - s.motor_angle
+    if apart <= 0.0:
+        _bring_together(p, s, s.motor_angle, 1)
+    elif apart >= p.backlash.gap:
+        _bring_together(p, s, s.motor_angle + p.backlash.gap, -1)
+    return used
+
+
+@kernel
+def _bring_together(p, s, angle, flank):
+    """Put the shaft on the flank that it has reached, at `angle` [rad], or the motor there if a stop is in the way."""
+    s.angle = min(max(angle, lower(p)), upper(p))
+    s.motor_angle += s.angle - angle
+    _meet(p, s, flank)
+
+
+@kernel
+def _wait(p, s, remaining):
+    """Let the motor stand with its teeth parted: nothing of it moves but the current and the time."""
+    step = remaining
+    if p.armature_inductance.inductance != 0.0:
+        step = min(step, 0.1 * p.armature_inductance.inductance / p.armature_resistance)
+        s.current = relaxed_current(p, s, step)
+    s.time += step
+    return step
+
+
+@kernel
+def _meet(p, s, flank):
+    """The motor is on a flank: the shaft takes up its velocity unless a stop is in the way."""
+    s.flank = flank
+    blocked = (s.angle >= upper(p) and flank > 0) or (s.angle <= lower(p) and flank < 0)
+    s.velocity = 0.0 if blocked else s.motor_velocity
+    s.motor_velocity = s.velocity
+    s.direction = math.copysign(1.0, s.velocity) if s.velocity != 0.0 else 0.0
+    s.motor_direction = 0.0

@@ -1,0 +1,82 @@
+"""The shaft on its own, behind teeth that have parted or give: without inertia, its torques balance at any moment.
+
+Held, or sliding at the velocity at which damping takes up what is left. The inertia is the motor's.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.effects import presliding
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.motion.body import PARTED, share, torque_at
+from pierburg_ros.plant.motion.events import lower, upper
+from pierburg_ros.plant.torques.friction import damping, hold, level
+from pierburg_ros.plant.torques.load import load
+
+LEAST_DAMPING = 1e-5
+"""Damping [N.m.s/rad] of a shaft that nothing damps: 0.1 N.m moves it at 10,000 rad/s, at once for all purposes."""
+
+
+@kernel
+def own_share(p):
+    """Share of the friction that the shaft carries."""
+    return 1.0 - share(p, PARTED)
+
+
+@kernel
+def onset(p, s, tooth, angle, time):
+    """Direction in which the standing shaft begins to move under the `tooth` torque [N.m]; 0 where it is held."""
+    own = own_share(p)
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    net = tooth - load(p, angle, 0.0, time)[0]
+    if net > hold(p, own, 1.0, angle, motor, s.bristle) and angle < upper(p):
+        return 1.0
+    if net < -hold(p, own, -1.0, angle, motor, s.bristle) and angle > lower(p):
+        return -1.0
+    return 0.0
+
+
+@kernel
+def resistance(p, s, angle, velocity, bristle, time):
+    """What resists the sliding shaft: torque at rest [N.m], stiffness [N.m/rad], damping [N.m.s/rad]."""
+    own = own_share(p)
+    torque, stiffness, by_velocity, _ = load(p, angle, velocity, time)
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    friction, _, by_angle, _ = level(p, s.direction, velocity, angle, motor)
+    resisting = own * damping(p, s.direction) + by_velocity
+    torque -= by_velocity * velocity
+    if p.presliding.stiffness != 0.0:
+        free = own * presliding.freedom(p.presliding, bristle, friction, s.direction)
+        torque += own * p.presliding.stiffness * bristle
+        return torque, stiffness + p.presliding.stiffness * free, resisting + p.presliding.damping * free
+    return torque + own * s.direction * friction, stiffness + own * s.direction * by_angle, resisting
+
+
+@kernel
+def bristle_after(p, s, travel):
+    """Bristle deflection [rad] after the shaft has gone `travel` [rad]."""
+    if p.presliding.stiffness == 0.0:
+        return 0.0
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    friction = level(p, s.direction, s.velocity, s.angle, motor)[0]
+    return presliding.moved(p.presliding, s.bristle, friction, travel)
+
+
+@kernel
+def drift(p, s, step):
+    """Let the shaft go on its own for a short `step` [s], up to a rigid stop; it rests where nothing drives it on."""
+    torque, stiffness, viscous = resistance(p, s, s.angle, s.velocity, s.bristle, s.time)
+    slack = max(viscous, LEAST_DAMPING)
+    velocity = -torque / slack
+    if velocity * s.direction <= 0.0:
+        s.velocity = s.direction = 0.0
+        return
+    rate = stiffness / slack
+    travel = velocity * (step if abs(rate) * step < 1e-9 else -math.expm1(-rate * step) / rate)
+    s.bristle = bristle_after(p, s, travel)
+    s.velocity = velocity
+    s.angle += travel
+    if s.angle <= lower(p) or s.angle >= upper(p):
+        s.angle = min(max(s.angle, lower(p)), upper(p))
+        s.velocity = s.direction = 0.0

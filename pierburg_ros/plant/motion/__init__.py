@@ -1,0 +1,1 @@
+"""Motion between events: linear pieces in closed form, and what ends them."""

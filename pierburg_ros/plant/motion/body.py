@@ -1,0 +1,198 @@
+"""The balance of torques on one inertia, and its motion over one linear piece."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from pierburg_ros.effects import presliding
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.motion.linear_piece import responses, turning_time
+from pierburg_ros.plant.motion.steady import ALIKE
+from pierburg_ros.plant.motion.third_order import third_responses
+from pierburg_ros.plant.torques.drive import motor_torque
+from pierburg_ros.plant.torques.friction import damping, level
+from pierburg_ros.plant.torques.load import load, ripple
+
+JOINED = 0
+"""Motor and shaft move as one."""
+PARTED = 1
+"""The motor alone, its teeth between the flanks or elastic."""
+
+
+class Line(NamedTuple):
+    """Net torque on a body as a straight line: force - slope dw - stiffness dangle + rate dt + gain dT_m.
+
+    N.m, N.m.s/rad, N.m/rad, N.m/s, 1.
+    """
+
+    force: float
+    slope: float
+    stiffness: float
+    rate: float
+    gain: float
+
+
+@kernel
+def torque_at(p, s, velocity, amperes):
+    """Motor torque [N.m] at motor-side `velocity` [rad/s], or with `amperes` [A] where the winding is inductive."""
+    if p.armature_inductance.inductance != 0.0:
+        return p.gear_ratio * p.torque_constant * amperes
+    return motor_torque(p, s, velocity)
+
+
+@kernel
+def electrical_slope(p, s):
+    """How the motor torque falls with velocity at once [N.m.s/rad]: the back-EMF, 0 behind an inductance."""
+    return 0.0 if p.armature_inductance.inductance != 0.0 else s.braking
+
+
+@kernel
+def share(p, kind):
+    """Share of the friction that the body of this kind carries."""
+    if kind == JOINED:
+        return 1.0
+    return p.backlash.motor_friction_share if p.backlash.gap > 0.0 else 0.0
+
+
+@kernel
+def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
+    """Net torque on the sliding body, as the straight line that touches it here.
+
+    Equation (6) of the paper, J d2(angle)/dt2 = k_g k_m i - k_s angle - preload - friction.
+    """
+    motor = torque_at(p, s, velocity, amperes)
+    part = share(p, kind)
+    friction, by_velocity, by_angle, by_torque = level(p, direction, velocity, angle, motor)
+    viscous = part * damping(p, direction)
+    pulled = stiffness = by_load_velocity = rate = 0.0
+    if kind == JOINED:
+        pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, time)
+    if p.cogging_torque.amplitude != 0.0:
+        lead = s.motor_angle - s.angle if kind == JOINED else 0.0
+        torque, slope = ripple(p, angle + lead)
+        pulled += torque
+        stiffness += slope
+    if p.presliding.stiffness != 0.0:
+        free = part * presliding.freedom(p.presliding, bristle, friction, direction)
+        viscous += p.presliding.damping * free
+        stiffness += p.presliding.stiffness * free
+        force = motor - pulled - part * p.presliding.stiffness * bristle - viscous * velocity
+        return Line(force, electrical_slope(p, s) + viscous + by_load_velocity, stiffness, -rate, 1.0)
+    gain = 1.0 - direction * part * by_torque
+    force = motor - pulled - part * direction * friction - viscous * velocity
+    slope = electrical_slope(p, s) * gain + by_load_velocity + viscous + part * direction * by_velocity
+    return Line(force, slope, stiffness + part * direction * by_angle, -rate, gain)
+
+
+@kernel
+def piece(p, s, step, velocity, line):
+    """Travel [rad], velocity [rad/s] and current [A] after `step` [s] on the straight line."""
+    if p.armature_inductance.inductance != 0.0 and s.closed_bridge:
+        return _inductive_piece(p, s, step, velocity, line)
+    inertia = p.total_inertia
+    slope, impulse, integral, twice, _ = _second(s, line.slope / inertia, line.stiffness / inertia, step)
+    push = (line.force + line.slope * velocity) / inertia
+    ramp = line.rate / inertia
+    travel = velocity * impulse + push * integral + ramp * twice
+    return travel, velocity * slope + push * impulse + ramp * integral, s.current
+
+
+@kernel
+def _second(s, damping, stiffness, step):
+    """Responses of x'' + damping x' + stiffness x, from the state where they are those of the last step."""
+    piece = s.piece
+    if piece.order != 2 or piece.damping != damping or piece.stiffness != stiffness or _differs(step, piece.step):
+        piece.order, piece.damping, piece.stiffness, piece.step = 2, damping, stiffness, step
+        slope, impulse, integral, twice, thrice = responses(damping, stiffness, step)
+        piece.slope, piece.impulse, piece.integral = slope, impulse, integral
+        piece.twice, piece.thrice = twice, thrice
+    return piece.slope, piece.impulse, piece.integral, piece.twice, piece.thrice
+
+
+@kernel
+def _third(s, damping, stiffness, pull, step):
+    """Responses of x''' + damping x'' + stiffness x' + pull x, from the state likewise."""
+    piece = s.piece
+    same = piece.order == 3 and piece.damping == damping and piece.stiffness == stiffness and piece.pull == pull
+    if not same or _differs(step, piece.step):
+        piece.order, piece.damping, piece.stiffness, piece.pull, piece.step = 3, damping, stiffness, pull, step
+        bend, slope, value, once, twice = third_responses(damping, stiffness, pull, step)
+        piece.slope, piece.impulse, piece.integral = bend, slope, value
+        piece.twice, piece.thrice = once, twice
+    return piece.slope, piece.impulse, piece.integral, piece.twice, piece.thrice
+
+
+@kernel
+def _differs(step, other):
+    return abs(step - other) > ALIKE * step
+
+
+@kernel
+def _inductive(p, s, velocity, line):
+    """Body and winding as one, x''' + damping x'' + stiffness x' + pull x = push + ramp t: these five.
+
+    From J w' = gain K i - slope w - stiffness x + rate t - rest and L i' = u - R i - K w.
+    """
+    both = p.total_inertia * p.armature_inductance.inductance
+    constant = p.gear_ratio * p.torque_constant
+    damping = s.resistance / p.armature_inductance.inductance + line.slope / p.total_inertia
+    stiffness = (s.resistance * line.slope + line.gain * constant * constant) / both
+    stiffness += line.stiffness / p.total_inertia
+    rest = line.gain * constant * s.current - line.slope * velocity - line.force
+    push = (line.gain * constant * s.voltage - s.resistance * rest) / both + line.rate / p.total_inertia
+    return damping, stiffness, s.resistance * line.stiffness / both, push, s.resistance * line.rate / both
+
+
+@kernel
+def _inductive_piece(p, s, step, velocity, line):
+    """The same with a current that lags: one piece of third order."""
+    damping, stiffness, pull, push, ramp = _inductive(p, s, velocity, line)
+    bend, slope, value, once, twice = _third(s, damping, stiffness, pull, step)
+    started = line.force / p.total_inertia
+    travel = velocity * (slope + damping * value) + started * value + push * once + ramp * twice
+    ended = velocity * (bend + damping * slope) + started * slope + push * value + ramp * once
+    swinging = -velocity * (stiffness * slope + pull * value)
+    acceleration = swinging + started * bend + push * slope + ramp * value
+    change = p.total_inertia * acceleration - after(p, line, step, travel, ended - velocity, 0.0)
+    return travel, ended, s.current + change / (line.gain * p.gear_ratio * p.torque_constant)
+
+
+@kernel
+def turn(p, s, velocity, line):
+    """Longest step [s] within which the velocity on the straight line passes zero once at most."""
+    acceleration = line.force / p.total_inertia
+    if p.armature_inductance.inductance == 0.0 or not s.closed_bridge:
+        damping, stiffness = line.slope / p.total_inertia, line.stiffness / p.total_inertia
+        if stiffness <= 0.25 * damping * damping:
+            return math.inf
+        jerk = line.rate / p.total_inertia - damping * acceleration - stiffness * velocity
+        return turning_time(damping, stiffness, acceleration, jerk)
+    damping, stiffness, _, push, _ = _inductive(p, s, velocity, line)
+    square = stiffness - 0.25 * damping * damping
+    if square <= 0.0:
+        return math.inf
+    settling = push / stiffness - velocity
+    swing = acceleration - 0.5 * damping * settling
+    if settling * settling + swing * swing / square < (velocity + settling) ** 2:
+        return math.inf
+    return turning_time(damping, stiffness, acceleration, push - stiffness * velocity - damping * acceleration)
+
+
+@kernel
+def after(p, line, step, travel, change, amperes):
+    """Net torque [N.m] on the line after `step` [s], `travel` [rad], and `change` [rad/s] and `amperes` [A] more."""
+    electric = line.gain * p.gear_ratio * p.torque_constant * amperes
+    return line.force + electric - line.slope * change - line.stiffness * travel + line.rate * step
+
+
+@kernel
+def error(p, s, line, step, actual, expected):
+    """Angle [rad] by which a step may be wrong: from `actual` torque at its end and the one `expected` there [N.m]."""
+    resisting = line.slope
+    if p.armature_inductance.inductance != 0.0:
+        resisting += line.gain * s.braking
+    response = step / p.total_inertia
+    if abs(resisting) * response > 1.0:
+        response = 1.0 / abs(resisting)
+    return 0.5 * abs(actual - expected) * response * step

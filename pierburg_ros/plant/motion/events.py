@@ -1,0 +1,249 @@
+"""One body between its stops: held, sliding, and the events that end either.
+
+A sliding step is an exponential Rosenbrock step (Hochbruck, Ostermann, Acta Numerica 19 (2010) 209-286): exact
+where the balance is linear, and shortened until what the linear form leaves out moves the body by less than
+`TOLERANCE` where it is not, which also finds kinks and jumps.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pierburg_ros.effects import external_load, presliding
+from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.motion.body import JOINED, PARTED, after, balance, error, piece, share, torque_at, turn
+from pierburg_ros.plant.torques import friction
+from pierburg_ros.plant.torques.drive import relaxed_current
+from pierburg_ros.plant.torques.load import load, ripple
+
+TOLERANCE = 3e-7
+"""Error that an internal step may make [rad], plus `SHARE` of its travel; 3e-7 rad is 0.8 microvolt."""
+SHARE = 1e-4
+"""See `TOLERANCE`."""
+SHORTEST = 1e-8
+"""Internal steps are not shortened below this [s]."""
+GROWTH = 30.0
+"""Largest exponent a step may grow by where friction falls with velocity."""
+
+
+@kernel
+def lower(p):
+    """The rigid lower stop [rad]; none where stops are elastic."""
+    return p.lower_stop if p.stop_compliance.stiffness == 0.0 else -math.inf
+
+
+@kernel
+def upper(p):
+    """The rigid upper stop [rad]; none where stops are elastic."""
+    return p.upper_stop if p.stop_compliance.stiffness == 0.0 else math.inf
+
+
+@kernel
+def onset(p, s, time, amperes):
+    """Direction in which motor and shaft, standing as one, begin to move: +1, -1, or 0 where friction holds."""
+    motor = torque_at(p, s, 0.0, amperes)
+    net = motor - load(p, s.angle, 0.0, time)[0] - ripple(p, s.motor_angle)[0]
+    if net > friction.hold(p, 1.0, 1.0, s.angle, motor, s.bristle) and s.angle < upper(p):
+        return 1.0
+    if net < -friction.hold(p, 1.0, -1.0, s.angle, motor, s.bristle) and s.angle > lower(p):
+        return -1.0
+    return 0.0
+
+
+@kernel
+def motor_onset(p, s, tooth, amperes):
+    """Direction in which the standing motor begins to move by itself, against `tooth` [N.m]; 0 where it is held."""
+    motor = torque_at(p, s, 0.0, amperes)
+    net = motor - tooth - ripple(p, s.motor_angle)[0]
+    part = share(p, PARTED)
+    if net > friction.hold(p, part, 1.0, s.motor_angle, motor, s.motor_bristle):
+        return 1.0
+    if net < -friction.hold(p, part, -1.0, s.motor_angle, motor, s.motor_bristle):
+        return -1.0
+    return 0.0
+
+
+@kernel
+def hold(p, s, remaining):
+    """Stand still for `remaining` [s] or until something sets the shaft moving; gives the time used."""
+    inductive = p.armature_inductance.inductance != 0.0
+    loaded = p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0
+    if not inductive and not loaded:
+        s.time += remaining
+        s.steady = p.linear
+        return remaining
+    step = remaining
+    if loaded:
+        step = min(step, external_load.next_switch(p.external_load, s.time) - s.time)
+        if p.external_load.frequency > 0.0:
+            step = min(step, 0.02 / p.external_load.frequency)
+    if inductive:
+        step = min(step, 2.0 * p.armature_inductance.inductance / p.armature_resistance)
+    step = _standing_time(p, s, min(max(step, SHORTEST), remaining))
+    if inductive:
+        s.current = relaxed_current(p, s, step)
+    s.time += step
+    return step
+
+
+@kernel
+def _standing_time(p, s, step):
+    if _onset_after(p, s, step) == 0.0:
+        return step
+    early, late = 0.0, step
+    for _ in range(40):
+        middle = 0.5 * (early + late)
+        if _onset_after(p, s, middle) == 0.0:
+            early = middle
+        else:
+            late = middle
+    return late
+
+
+@kernel
+def _onset_after(p, s, step):
+    amperes = relaxed_current(p, s, step) if p.armature_inductance.inductance != 0.0 else 0.0
+    return onset(p, s, s.time + step, amperes)
+
+
+@kernel
+def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
+    """Slide for `remaining` [s] or to the next event: time used, angle, velocity, whether at rest, whether at a limit.
+
+    The event is the velocity passing zero, or the angle reaching `low` or `high` [rad], where it stays.
+    """
+    bristle = s.bristle if kind == JOINED else s.motor_bristle
+    line = balance(p, s, kind, angle, velocity, direction, s.time, s.current, bristle)
+    step = min(_first_step(p, s, line.slope, remaining), turn(p, s, velocity, line))
+    while True:
+        travel, ended, amperes = piece(p, s, step, velocity, line)
+        rests = False
+        if ended * direction < 0.0:
+            step = _moment(p, s, step, velocity, line, math.nan)
+            travel, ended, amperes = piece(p, s, step, velocity, line)
+            ended, rests = 0.0, True
+        limit = high if direction > 0.0 else low
+        stops = (angle + travel - limit) * direction >= 0.0
+        if stops:
+            step = _moment(p, s, step, velocity, line, limit - angle)
+            travel, ended, amperes = piece(p, s, step, velocity, line)
+        if p.plain:
+            break
+        if abs(travel) > p.finest and step > SHORTEST:
+            step = max(0.9 * step * p.finest / abs(travel), SHORTEST)
+            continue
+        excess = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line) / allowed(travel)
+        if not excess > 1.0 or step <= SHORTEST:
+            s.step = next_step(s.step, step, remaining, excess)
+            break
+        step = shorter(step, excess)
+    _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes)
+    if p.linear:
+        s.steady = step == remaining and not rests and not stops
+        s.constant = (line.force + line.slope * velocity + line.stiffness * angle) / p.total_inertia
+    s.current = amperes
+    s.time += step
+    return step, (limit if stops else angle + travel), ended, rests, stops
+
+
+@kernel
+def _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes):
+    """Leave the bristles of the contact as the motion leaves them."""
+    if p.presliding.stiffness == 0.0:
+        return
+    if kind == JOINED:
+        s.bristle = _bristle(p, s, s.bristle, direction, angle, velocity, travel, ended, amperes)
+        s.motor_bristle = s.bristle
+    else:
+        s.motor_bristle = _bristle(p, s, s.motor_bristle, direction, angle, velocity, travel, ended, amperes)
+
+
+@kernel
+def _first_step(p, s, slope, remaining):
+    step = remaining
+    if not p.plain:
+        step = min(step, max(s.step, SHORTEST))
+        if slope < 0.0:
+            step = min(step, max(-GROWTH * p.total_inertia / slope, SHORTEST))
+        if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
+            ahead = external_load.next_switch(p.external_load, s.time) - s.time
+            step = min(step, max(ahead, SHORTEST))
+            if p.external_load.frequency > 0.0:
+                step = min(step, 0.1 / p.external_load.frequency)
+    return step
+
+
+@kernel
+def allowed(travel):
+    """Error [rad] that a step of this `travel` [rad] may make."""
+    return TOLERANCE + SHARE * abs(travel)
+
+
+@kernel
+def next_step(before, step, remaining, excess):
+    """Length [s] to try next after an accepted `step`, `excess` being its error over the allowed one."""
+    grown = step * min(3.0, 0.8 * max(excess, 1e-6) ** (-1.0 / 3.0))
+    return max(grown, before) if step == remaining else grown
+
+
+@kernel
+def shorter(step, excess):
+    """Length [s] to try instead of a `step` whose error is `excess` times the allowed one."""
+    return max(step * max(0.05, 0.8 * excess ** (-1.0 / 3.0)), SHORTEST)
+
+
+@kernel
+def _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line):
+    """Angle [rad] by which the step may be wrong, from the torque that the straight line misses at its end."""
+    bristle = 0.0
+    if p.presliding.stiffness != 0.0:
+        bristle = s.bristle if kind == JOINED else s.motor_bristle
+        bristle = _bristle(p, s, bristle, direction, angle, velocity, travel, ended, amperes)
+    actual = balance(p, s, kind, angle + travel, ended, direction, s.time + step, amperes, bristle).force
+    expected = after(p, line, step, travel, ended - velocity, amperes - s.current)
+    return error(p, s, line, step, actual, expected)
+
+
+@kernel
+def _bristle(p, s, bristle, direction, angle, velocity, travel, ended, amperes):
+    before = friction.level(p, direction, velocity, angle, torque_at(p, s, velocity, s.current))[0]
+    after = friction.level(p, direction, ended, angle + travel, torque_at(p, s, ended, amperes))[0]
+    return presliding.moved(p.presliding, bristle, 0.5 * (before + after), travel)
+
+
+@kernel
+def _moment(p, s, step, velocity, line, target):
+    """When, within `step`, the travel reaches `target` [rad], or (target not a number) the velocity zero.
+
+    Illinois variant of the secant method (Dowell, Jarratt, BIT 11 (1971) 168-174).
+    """
+    early, late = 0.0, step
+    at_late = _miss(p, s, late, velocity, line, target)
+    at_early = velocity if math.isnan(target) else -target
+    if at_early == 0.0:
+        if not math.isnan(target):
+            return 0.0
+        at_early = -at_late
+    kept = 0
+    for _ in range(80):
+        if late - early <= 1e-12 or at_late == 0.0:
+            break
+        middle = late - at_late * (late - early) / (at_late - at_early)
+        if not early < middle < late:
+            middle = 0.5 * (early + late)
+        at_middle = _miss(p, s, middle, velocity, line, target)
+        if (at_middle > 0.0) == (at_late > 0.0):
+            late, at_late = middle, at_middle
+            at_early *= 0.5 if kept == -1 else 1.0
+            kept = -1
+        else:
+            early, at_early = middle, at_middle
+            at_late *= 0.5 if kept == 1 else 1.0
+            kept = 1
+    return late
+
+
+@kernel
+def _miss(p, s, step, velocity, line, target):
+    travel, ended, _ = piece(p, s, step, velocity, line)
+    return ended if math.isnan(target) else travel - target

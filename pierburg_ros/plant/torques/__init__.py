@@ -1,0 +1,1 @@
+"""What drives, loads and brakes the shaft, and what its sensor shows."""

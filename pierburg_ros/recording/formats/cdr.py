@@ -1,0 +1,121 @@
+"""Decodes and encodes the few message types the project reads, many messages at a time.
+
+CDR (OMG, Common Data Representation): four bytes of header, of which the second tells the byte order, then
+the fields, each aligned to its own size counted from the end of the header.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording.formats.messages import Integers, Messages
+
+FLOAT64 = "std_msgs/msg/Float64"
+BOOL = "std_msgs/msg/Bool"
+CLOCK = "rosgraph_msgs/msg/Clock"
+JOINT_STATE = "sensor_msgs/msg/JointState"
+HEADER = 4
+LITTLE = b"\x00\x01\x00\x00"
+SHAFT = "swirl_shaft"
+"""Name of the joint that is taken where a message carries several."""
+
+
+def byte_order(data: bytes) -> str:
+    """`<` or `>` as the header of a message says."""
+    return "<" if data[1] & 1 else ">"
+
+
+def field(messages: Messages, kind: str, offset: int = HEADER) -> NDArray[Any]:
+    """The field of NumPy type `kind` at one `offset` of all messages, shape (messages,)."""
+    size = np.dtype(kind).itemsize
+    short = [place for place, data in enumerate(messages.data) if len(data) < offset + size]
+    if short:
+        raise InputError(
+            f"{messages.topic}: message {short[0]} ends after {len(messages.data[short[0]])} bytes, expected"
+            f" a {messages.type}. Record again."
+        )
+    order = byte_order(messages.data[0]) if messages.data else "<"
+    content = b"".join(data[offset : offset + size] for data in messages.data)
+    return np.frombuffer(content, order + kind).astype(kind)
+
+
+def float64(messages: Messages) -> NDArray[np.float64]:
+    """Values of std_msgs/Float64."""
+    return field(messages, "f8").astype(np.float64)
+
+
+def boolean(messages: Messages) -> NDArray[np.float64]:
+    """Values of std_msgs/Bool as 0 and 1."""
+    return np.where(field(messages, "u1"), 1.0, 0.0)
+
+
+def stamp(messages: Messages) -> Integers:
+    """The leading builtin_interfaces/Time [ns] of rosgraph_msgs/Clock or of a message with a header."""
+    seconds, nanoseconds = field(messages, "i4"), field(messages, "u4", HEADER + 4)
+    return seconds.astype(np.int64) * 1_000_000_000 + nanoseconds.astype(np.int64)
+
+
+def position(messages: Messages) -> NDArray[np.float64]:
+    """Shaft position [rad] of sensor_msgs/JointState, looked up anew for each length of message."""
+    values = np.empty(len(messages))
+    offsets: dict[int, int] = {}
+    for place, data in enumerate(messages.data):
+        if len(data) not in offsets:
+            offsets[len(data)] = position_offset(messages, data)
+        (values[place],) = struct.unpack_from(byte_order(data) + "d", data, offsets[len(data)])
+    return values
+
+
+def position_offset(messages: Messages, data: bytes) -> int:
+    """Where the shaft's position lies in one sensor_msgs/JointState."""
+    length = struct.Struct(byte_order(data) + "I")
+    names: list[str] = []
+    try:
+        cursor = HEADER + 8
+        (size,) = length.unpack_from(data, cursor)
+        cursor = aligned(cursor + 4 + size, 4)
+        (joints,) = length.unpack_from(data, cursor)
+        cursor += 4
+        for _ in range(joints):
+            cursor = aligned(cursor, 4)
+            (size,) = length.unpack_from(data, cursor)
+            names.append(data[cursor + 4 : cursor + 3 + size].decode())
+            cursor += 4 + size
+        cursor = aligned(cursor, 4)
+        (positions,) = length.unpack_from(data, cursor)
+    except (struct.error, UnicodeDecodeError) as error:
+        raise InputError(f"{messages.topic}: a message is not a {JOINT_STATE} ({error}). Record again.") from error
+    return aligned(cursor + 4, 8) + 8 * joint(messages.topic, names, positions)
+
+
+def joint(topic: str, names: list[str], positions: int) -> int:
+    """Which of the joints is the shaft: the only one, or the one with its name."""
+    if positions == 1:
+        return 0
+    if SHAFT in names[:positions]:
+        return names.index(SHAFT)
+    raise InputError(
+        f"{topic} has {positions} positions (joints: {', '.join(names) or 'unnamed'}), expected one joint,"
+        f" or one named {SHAFT}. Record the shaft's joint alone."
+    )
+
+
+def aligned(cursor: int, size: int) -> int:
+    """The next place from `cursor` on where a field of `size` bytes may start."""
+    return cursor + (HEADER - cursor) % size
+
+
+def encode_float64(values: NDArray[np.float64]) -> list[bytes]:
+    """One std_msgs/Float64 for each value."""
+    content = np.asarray(values, "<f8").tobytes()
+    return [LITTLE + content[start : start + 8] for start in range(0, len(content), 8)]
+
+
+def encode_bool(values: NDArray[np.float64]) -> list[bytes]:
+    """One std_msgs/Bool for each value."""
+    return [LITTLE + (b"\x01" if value else b"\x00") for value in values]

@@ -1,0 +1,48 @@
+"""The covariance of a fit against statistics with a closed form."""
+
+import numpy as np
+import pytest
+
+from pierburg_ros.estimation.uncertainty import correlation_length, uncertainty
+
+
+def autoregressive(size, memory, seed):
+    """First-order autoregressive noise of unit innovation."""
+    innovation = np.random.default_rng(seed).standard_normal(size)
+    noise = np.empty(size)
+    noise[0] = innovation[0]
+    for index in range(1, size):
+        noise[index] = memory * noise[index - 1] + innovation[index]
+    return noise
+
+
+def test_white_noise_gives_the_classical_deviation_of_a_mean():
+    residual = 0.003 * np.random.default_rng(0).standard_normal(20_000)
+    found = uncertainty(-np.ones((residual.size, 1)), (residual,))
+    assert found.white
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(0.003 / np.sqrt(20_000), rel=0.02)
+
+
+def test_correlated_noise_widens_the_deviation_as_theory_says():
+    memory, size = 0.9, 100_000
+    residual = autoregressive(size, memory, 1)
+    residual -= residual.mean()
+    found = uncertainty(-np.ones((size, 1)), (residual,))
+    # Variance of the mean of first-order autoregressive noise: innovation / (1 - memory)^2 / size.
+    expected = 1.0 / (1.0 - memory) / np.sqrt(size)
+    assert not found.white
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(expected, rel=0.15)
+
+
+def test_white_noise_has_no_correlation_length_and_slow_noise_a_long_one():
+    assert correlation_length(np.random.default_rng(3).standard_normal(10_000)) == 1
+    # 0.9^28 is below 0.05.
+    assert 15 <= correlation_length(autoregressive(100_000, 0.9, 4)) <= 45
+
+
+def test_a_direction_without_data_is_undetermined():
+    random = np.random.default_rng(5)
+    column = random.standard_normal(1000)
+    jacobian = np.column_stack([column, 2.0 * column, random.standard_normal(1000)])
+    found = uncertainty(jacobian, (random.standard_normal(1000),))
+    assert found.undetermined.tolist() == [True, True, False]
