@@ -1,33 +1,87 @@
-"""What an effect declares: its parameters, where it acts, where it shows, and where its equation comes from."""
+"""What an effect declares: everything that anyone knows of it, but for its kernels."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+from pierburg_ros import parameter
 
 Stage = Literal["input", "drive", "transmission", "load", "friction", "sensor"]
+Drive = Literal["voltage", "current", "torque"]
+Load = Literal["spring", "pendulum", "none"]
+Sensor = Literal["hall_voltage", "position", "speed"]
+Memory = Literal["none", "brief", "lasting"]
+Start = Mapping[str, float]
 
-LUGRE = "Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Automatic Control 40 (1995) 419-425"
-ARMSTRONG = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083-1138"
-CONTRACT = "section 7 of the interface contract"
+DRIVES: tuple[Drive, ...] = ("voltage", "current", "torque")
+LOADS: tuple[Load, ...] = ("spring", "pendulum", "none")
+SENSORS: tuple[Sensor, ...] = ("hall_voltage", "position", "speed")
+QUADRATURE = (0.0, math.pi / 2)
+"""Phases from which a search with a free phase starts: a linear step finds any other between them."""
+
+
+class Missing(Protocol):
+    """What recordings show of the torque that a model misses: where starting values may be read from."""
+
+    def turns(self, between: tuple[float, float], most: int) -> Sequence[float]:
+        """The strongest rhythms over the angle [periods per motor revolution] within `between`, strongest first."""
+
+    def pulses(self, between: tuple[float, float], most: int) -> Sequence[float]:
+        """The strongest rhythms in time [Hz] within `between`, strongest first."""
+
+    def spans(self, most: int) -> Sequence[tuple[float, float, float]]:
+        """Spans of time that stand out: start [s], end [s] or 0 for the end of the recording, torque [N.m]."""
+
+    def tight_spots(self, most: int) -> Sequence[float]:
+        """Angles [rad] at which more friction is missing than elsewhere, the clearest first."""
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """One number of an effect.
+class Parameter(parameter.Parameter):
+    """One number of an effect, and how a search moves it."""
 
-    `minimum` and `maximum` bound what is accepted and what a fit may try; `plausible` is the range in which
-    a search starts. A `default` of None means that the number must be given once the effect is active.
+    plausible: tuple[float, float] = (0.0, 0.0)
+    """Range in which a search starts."""
+    logarithmic: bool = False
+    """Searched by its logarithm."""
+    above: str | None = None
+    """Base parameter that it is counted from, and is never below."""
+    below: str | None = None
+    """Base parameter that it stays below."""
+    least: float | None = None
+    """Lowest value that is searched, where a lower one would be another effect."""
+    stride: float | None = None
+    """Largest factor by which one linear step may scale it; None: a step does not scale it."""
+    rhythm: bool = False
+    """A frequency: known as finely as the recording is long, and moved in small steps."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way in which an effect may act: what is free, what is fixed, and where a search for it starts.
+
+    `starts` are values by parameter, or what makes them of the torque that a model misses. A parameter that is
+    counted from another one starts by what it exceeds that.
     """
 
-    name: str
-    unit: str
-    minimum: float
-    maximum: float
-    plausible: tuple[float, float]
-    meaning: str
-    default: float | None = None
-    choices: tuple[float, ...] = ()
+    free: tuple[str, ...]
+    starts: tuple[Start, ...] | Callable[[Missing], Sequence[Start]]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Ripple:
+    """A sine in the load: the parameters that are its amplitude, rhythm and phase, and where its rhythm may lie."""
+
+    amplitude: str
+    rhythm: str
+    phase: str
+    rhythms: Callable[[Missing], Sequence[float]]
+    whole: bool = False
+    """Whether the rhythm is a whole number, held while the others are searched: it trades against the phase."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +91,45 @@ class Effect:
     id: str
     stage: Stage
     sentence: str
+    """What it does, for a person who repairs the actuator."""
     equation: str
-    origin: str
+    source: str
+    """Where the equation comes from: title and year."""
     shows_in: str
+    """Where in a recording its mark is."""
     record: str
+    """What to record to see it."""
     parameters: tuple[Parameter, ...]
     strength: tuple[str, ...]
+    """Parameters that make it absent where all of them are 0."""
+    typical: Mapping[str, float]
+    """Values as one meets them; what is left out is 0."""
+    variants: tuple[Variant, ...] = ()
+    """In which ways a search looks for it; none: it is not searched for."""
+    ripple: Ripple | None = None
+    state: tuple[str, ...] = ()
+    """Numbers that the plant's state keeps for it, `s.<id>.<name>` in the kernels, all 0 at the start."""
+    memory: Memory = "none"
+    """Whether it remembers what was: not at all, for less than a second, or for longer than any stretch."""
+    linear: bool = False
+    """Whether torques stay straight lines of angle and velocity between events: the simulator then takes no
+    shorter steps for it."""
+    jumps: bool = False
+    """Whether events jump as its values change, so that the cost of a fit has many local minima."""
+    dated: bool = False
+    """Whether it acts at a time of one recording, and is not a property of the actuator."""
+    drives: tuple[Drive, ...] = DRIVES
+    loads: tuple[Load, ...] = LOADS
+    sensors: tuple[Sensor, ...] = SENSORS
+    stops: bool = False
+    """Whether it needs stops to act."""
+    turns_within: Callable[[Mapping[str, float]], float] | None = None
+    """Travel [rad] within which its torque turns no more than once, from all values of a model by dotted name;
+    None: its torque does not turn over the angle."""
+    constant_part: tuple[str, str] | None = None
+    """A parameter of it that, acting throughout, is the same as a change of a base parameter: both names."""
+    rounds: str | None = None
+    """The parameter that is the step of a converter, seen in the samples and not searched for."""
 
     def parameter(self, name: str) -> Parameter:
         """The declaration of the parameter called `name`; KeyError where there is none."""
@@ -52,3 +139,20 @@ class Effect:
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in the order of the declaration."""
         return tuple(p.name for p in self.parameters)
+
+    def acts(self, values: Mapping[str, float]) -> bool:
+        """Whether it acts in a model with these `values`, by dotted name."""
+        return any(values[f"{self.id}.{name}"] != 0.0 for name in self.strength)
+
+    def acts_on(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> bool:
+        """Whether it can act in an actuator of this kind."""
+        fits = drive in self.drives and load in self.loads and sensor in self.sensors
+        return fits and (stops or not self.stops)
+
+
+def grid(**values: tuple[float, ...]) -> tuple[Start, ...]:
+    """Every combination of starting `values`."""
+    starts: list[dict[str, float]] = [{}]
+    for name, several in values.items():
+        starts = [{**start, name: value} for start in starts for value in several]
+    return tuple(starts)
