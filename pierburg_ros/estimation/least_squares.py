@@ -3,28 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Signal = NDArray[np.float64]
+from pierburg_ros.signals import Signal
+
 Residual = Callable[[Signal], Signal]
+
+REJECTED = 6
+"""Steps that may fail to lower the cost before a descent ends: the damping has then grown by 1e10."""
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Where the search ended: point, residual there, its Jacobian, half the sum of squares, evaluations used."""
+    """Where a descent ended: the point and the residual there."""
 
     point: Signal
     residual: Signal
-    jacobian: Signal
-    evaluations: int
+    slope: Callable[[], Signal] = field(repr=False, compare=False)
 
     @property
     def cost(self) -> float:
         """Sum of squared residuals."""
         return float(self.residual @ self.residual)
+
+    @cached_property
+    def jacobian(self) -> Signal:
+        """Derivative of the residual at the point, shape (samples, quantities); taken when first asked for."""
+        return self.slope()
 
 
 def minimise(
@@ -38,61 +46,61 @@ def minimise(
 ) -> Solution:
     """Least squares of `residual` within bounds from `start`; finite differences of size `step`.
 
-    Ends when an iteration lowers the cost by less than `tolerance` of it or nothing lowers it. Nielsen's damping
-    (Madsen, Nielsen, Tingleff, Methods for Non-linear Least Squares Problems, 2nd ed. 2004).
+    Quantities whose bounds coincide stay where they are. Ends after so many `iterations`, or when one lowers the cost
+    by less than `tolerance` of it, or nothing lowers it. The damping is Marquardt's: relative to the curvature of each
+    quantity, divided by five after a step that lowers the cost, multiplied faster and faster while steps do not.
     """
+    free = upper > lower
+
+    def slope(point: Signal, value: Signal) -> Signal:
+        return jacobian(residual, point, value, lower, upper, step)
+
     point = np.clip(start, lower, upper)
     value = residual(point)
-    cost, damping, growth, evaluations = float(value @ value), 1e-3, 2.0, 1
-    if point.size == 0:
-        return Solution(point, value, np.zeros((value.size, 0)), 1)
-    jacobian = _jacobian(residual, point, value, lower, upper, step)
-    for iteration in range(iterations):
-        if iteration > 0:
-            jacobian = _jacobian(residual, point, value, lower, upper, step)
-        evaluations += point.size
-        improved = False
-        for _ in range(6):
-            trial = _step(jacobian, value, point, lower, upper, damping)
+    cost, damping = float(value @ value), 1e-3
+    for _ in range(iterations if free.any() else 0):
+        slopes, growth, before = slope(point, value), 8.0, cost
+        for _ in range(REJECTED):
+            trial = _step(slopes, value, point, lower, upper, free, damping)
             there = residual(trial)
-            evaluations += 1
             after = float(there @ there)
-            if np.isfinite(after) and after < cost:
-                improved = True
-                damping, growth = max(damping * 0.2, 1e-9), 2.0
+            if after < cost:
+                point, value, cost, damping = trial, there, after, max(damping * 0.2, 1e-9)
                 break
-            damping, growth = damping * growth * 4.0, growth * 2.0
-        if not improved:
+            damping, growth = damping * growth, growth * 2.0
+        if before - cost <= tolerance * before:
             break
-        gain = (cost - after) / max(cost, 1e-30)
-        point, value, cost = trial, there, after
-        if gain < tolerance:
-            break
-    return Solution(point, value, jacobian, evaluations)
+    return Solution(point, value, lambda: slope(point, value))
 
 
-def _jacobian(residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal) -> Signal:
+def jacobian(
+    residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal
+) -> Signal:
+    """Derivative of `residual` at `point`, where it is `value`, by one-sided differences away from a bound."""
+    if point.size == 0:
+        return np.zeros((value.size, 0))
+    free = upper > lower
     signed = np.where(point + step <= upper, step, -step)
-    points = [point + signed[i] * np.eye(point.size)[i] for i in range(point.size)]
-    columns = [(there - value) / signed[i] for i, there in enumerate(map(residual, points))]
+    columns = [
+        (residual(point + signed[i] * unit) - value) / signed[i] if free[i] else np.zeros(value.size)
+        for i, unit in enumerate(np.eye(point.size))
+    ]
     return np.asarray(np.nan_to_num(np.stack(columns, axis=1)))
 
 
-def _step(jacobian: Signal, value: Signal, point: Signal, lower: Signal, upper: Signal, damping: float) -> Signal:
-    """Damped Gauss-Newton step; a parameter that a bound stops is left out and the rest solved again."""
-    normal, gradient = jacobian.T @ jacobian, jacobian.T @ value
-    free = np.ones(point.size, dtype=bool)
-    trial = point.copy()
-    for _ in range(point.size):
+def _step(
+    slopes: Signal, value: Signal, point: Signal, lower: Signal, upper: Signal, free: Signal, damping: float
+) -> Signal:
+    """Where a damped Gauss-Newton step leads; a quantity that a bound stops is left out and the rest solved again."""
+    normal, gradient = slopes.T @ slopes, slopes.T @ value
+    free = free.copy()
+    while free.any():
         inner = normal[np.ix_(free, free)]
         scale = np.diag(inner) + 1e-12 * max(float(np.max(np.diag(normal))), 1e-300)
-        move = np.linalg.solve(inner + np.diag(damping * scale), -gradient[free])
         trial = point.copy()
-        trial[free] += move
+        trial[free] -= np.linalg.solve(inner + np.diag(damping * scale), gradient[free])
         blocked = free & (((trial < lower) & (point <= lower)) | ((trial > upper) & (point >= upper)))
         if not blocked.any():
-            break
+            return np.asarray(np.clip(trial, lower, upper))
         free &= ~blocked
-        if not free.any():
-            return np.array(point)
-    return np.asarray(np.clip(trial, lower, upper))
+    return np.array(point)

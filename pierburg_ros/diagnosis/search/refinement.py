@@ -1,14 +1,13 @@
-"""A second look around a fit whose cost is rough: events jump with the parameters, and a descent ends in any dent."""
+"""Descents to other local minima around a fit: where events jump with the values, a descent ends in the nearest."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.search.explanation import LOGARITHMIC
-from pierburg_ros.diagnosis.search.fits import Fit, Search, repetition, spread
-
-Signal = NDArray[np.float64]
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.signals import Signal
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""
@@ -30,83 +29,82 @@ WIDEST = 0.25
 """Share of a parameter's range beyond which nothing is looked for."""
 
 
-def polished(search: Search, fit: Fit) -> Fit:
+def refined(estimator: Estimator, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
     One descent starts at the lowest of many points. Others start far along the weakest axis, and once where leaps along
     logarithmic parameters land: the cost's valley bends, so that no point on a straight line shows how low it runs
-    there. Rounds take fine and coarse differences
-    for the Jacobian in turn; the search ends when neither helps.
+    there. Rounds take fine and coarse differences for the Jacobian in turn; it ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
-        axes, steps = _axes(search, fit), _steps(search, fit, coarse=number % 2 == 1)
-        starts = [_lowest(search, fit, axes), *(_values(search, fit, hop * axes[0]) for hop in HOPS if number > 0)]
-        starts += _landings(search, fit) if number == 0 else []
-        descents = [search.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
+        axes, steps = _axes(estimator, fit), _steps(estimator, fit, coarse=number % 2 == 1)
+        starts = [_lowest(estimator, fit, axes), *(_values(estimator, fit, hop * axes[0]) for hop in HOPS if number > 0)]
+        starts += _landings(estimator, fit) if number == 0 else []
+        descents = [estimator.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
-        idle = idle + 1 if fit.chi2 - again.chi2 < repetition(fit) else 0
+        idle = idle + 1 if fit.chi2 - again.chi2 < fit.repetition else 0
         fit = again if again.chi2 <= fit.chi2 else fit
         if idle == 2:
             break
-    return fit
+    return replace(fit, refined=True)
 
 
-def _landings(search: Search, fit: Fit) -> list[dict[str, float]]:
+def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
     """Where to descend from after a leap of one parameter: the lowest points among scans of those beside it."""
     names, landings = fit.explanation.names, []
-    units = np.eye(len(names))
+    axes, units = estimator.coordinates(fit.explanation).axes, np.eye(len(names))
     for leaps, most in LEAPS.items():
         found = []
-        for name, unit in zip(names, units, strict=True):
+        for name, axis, unit in zip(names, axes, units, strict=True):
             effect = name.split(".")[0]
             beside = [i for i, other in enumerate(names) if other != name and other.split(".")[0] == effect]
             scales = [fit.solution.point[i] * units[i] for i in beside]
-            for leap in leaps if name in LOGARITHMIC else ():
+            for leap in leaps if "." in name and axis.logarithmic else ():
                 scans = [leap * unit + share * scale for scale in scales for share in SCAN]
-                found.append(min(_measured(search, fit, [leap * unit, *scans]), key=lambda landing: landing[0]))
+                found.append(min(_measured(estimator, fit, [leap * unit, *scans]), key=lambda landing: landing[0]))
         landings += [values for _, values in sorted(found, key=lambda landing: landing[0])[:most]]
     return landings
 
 
-def _measured(search: Search, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
+def _measured(estimator: Estimator, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
     """The cost where each of the `moves` leads, and the values there."""
-    places = [_values(search, fit, move) for move in moves]
-    return [(search.chi2_at(fit.explanation, values), values) for values in places]
+    places = [_values(estimator, fit, move) for move in moves]
+    return [(estimator.chi2_at(fit.explanation, values), values) for values in places]
 
 
-def _steps(search: Search, fit: Fit, coarse: bool) -> Signal:
+def _steps(estimator: Estimator, fit: Fit, coarse: bool) -> Signal:
     """Differences for the Jacobian: what the data tell apart, within limits, or the largest."""
-    usual = search.coordinates(fit.explanation).steps()
+    usual = estimator.coordinates(fit.explanation).steps
     if coarse:
         return COARSEST * usual
-    told_apart = np.sqrt(spread(fit) / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
+    told_apart = np.sqrt(fit.spread / np.maximum(np.sum(fit.solution.jacobian**2, axis=0), 1e-12))
     return np.asarray(np.clip(told_apart, FINEST * usual, COARSEST * usual))
 
 
-def _lowest(search: Search, fit: Fit, axes: list[Signal]) -> dict[str, float]:
+def _lowest(estimator: Estimator, fit: Fit, axes: list[Signal]) -> dict[str, float]:
     """Values at the lowest point on the axes, those of `fit` where none is lower."""
     moves = [side * axis for axis in axes for reach in REACHES for side in (-reach, reach)]
-    return min([(fit.chi2, fit.values), *_measured(search, fit, moves)], key=lambda point: point[0])[1]
+    return min([(fit.chi2, fit.values), *_measured(estimator, fit, moves)], key=lambda point: point[0])[1]
 
 
-def _values(search: Search, fit: Fit, move: Signal) -> dict[str, float]:
+def _values(estimator: Estimator, fit: Fit, move: Signal) -> dict[str, float]:
     """Values where `move` leads from `fit`, within bounds."""
-    coordinates = search.coordinates(fit.explanation)
-    return coordinates.values(np.clip(fit.solution.point + move, *coordinates.bounds()))
+    coordinates = estimator.coordinates(fit.explanation)
+    return coordinates.values(np.clip(fit.solution.point + move, *coordinates.bounds))
 
 
-def _axes(search: Search, fit: Fit) -> list[Signal]:
+def _axes(estimator: Estimator, fit: Fit) -> list[Signal]:
     """The axes of the cost around `fit`, the weakest first, each as long as one standard deviation along it.
 
     The longest reach on an axis stays within `WIDEST` of each parameter's range.
     """
-    lower, upper = search.coordinates(fit.explanation).bounds()
+    lower, upper = estimator.coordinates(fit.explanation).bounds
     jacobian = fit.solution.jacobian
     stiffness, directions = np.linalg.eigh(jacobian.T @ jacobian)
     floor = max(1e-12 * float(stiffness[-1]), 1e-12)
     found = []
     for stiff, direction in zip(stiffness, directions.T, strict=True):
         room = float(np.min(WIDEST * (upper - lower) / np.maximum(np.abs(direction), 1e-12)))
-        found.append(min(np.sqrt(spread(fit) / max(stiff, floor)), room / REACHES[-1]) * direction)
+        found.append(min(np.sqrt(fit.spread / max(stiff, floor)), room / REACHES[-1]) * direction)
     return found

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData
-from pierburg_ros.diagnosis.search.fits import Fit, Search, repetition
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator, Fit
 
 SIGNIFICANT = 60.0
 """Gain in chi2, in effective samples, that one more quantity must bring; calibrated on recordings with none."""
 TIED = 12.0
 """Difference in chi2, in effective samples, below which two explanations of one size are not told apart."""
 REFUTED = 1.1
-"""Error on the choosing samples, over that of an explanation that fits the training samples alike or is smaller, from
+"""Error on the validation samples, over that of an explanation that fits the training samples alike or is smaller, from
 which one is out."""
 FORMULATION = 1.15e-4
 """What simulations of one effect may differ by [rad, root mean square], each right in its own way: 0.3 mV of Hall
@@ -31,23 +31,23 @@ WHITE = 1.5
 
 def gain(smaller: Fit, larger: Fit) -> float:
     """What the larger explanation gains in chi2, counted in effective samples."""
-    return (smaller.misfit - larger.misfit) / repetition(larger)
+    return (smaller.misfit - larger.misfit) / larger.repetition
 
 
-def betters(larger: Fit, smaller: Fit, search: Search) -> bool:
+def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
     """Whether a larger explanation gains more than chance and the difference of simulators can give it.
 
-    One that fails on the choosing samples, where the smaller does not, has only been bent to what trains.
+    One that fails on the validation samples, where the smaller does not, has only been bent to what trains.
     """
     more = larger.explanation.size - smaller.explanation.size
-    if gain(smaller, larger) <= SIGNIFICANT * more + allowance(smaller, search.data) / repetition(larger):
+    if gain(smaller, larger) <= SIGNIFICANT * more + allowance(smaller, estimator.data) / larger.repetition:
         return False
-    return search.choosing_misfit(larger) <= _highest(search.choosing_misfit(smaller), larger)
+    return estimator.validation_misfit(larger) <= _highest(estimator.validation_misfit(smaller), larger)
 
 
 def white(fit: Fit) -> bool:
     """Whether an explanation leaves white noise, be it some percent more than estimated: the estimate is uncertain."""
-    return fit.ratio < EXPLAINED and repetition(fit) < WHITE
+    return fit.ratio < EXPLAINED and fit.repetition < WHITE
 
 
 def adequate(fit: Fit) -> bool:
@@ -60,21 +60,21 @@ def complete(fit: Fit) -> bool:
     return fit.ratio <= COMPLETE or white(fit)
 
 
-def accounts_for_all(fit: Fit, data: EvidenceData) -> bool:
+def accounts_for_all(fit: Fit, data: Data) -> bool:
     """Whether an explanation with an effect leaves white noise, and beyond it no more than simulators may differ by."""
     small = bool(fit.explanation.variants) and fit.misfit < fit.solution.residual.size + allowance(fit, data)
-    return small and repetition(fit) < WHITE
+    return small and fit.repetition < WHITE
 
 
-def overlooks(fit: Fit, search: Search) -> bool:
+def overlooks(fit: Fit, estimator: Estimator) -> bool:
     """Whether an explanation without an effect accounts for the samples that train, but not for those that choose."""
     if fit.explanation.variants or not adequate(fit):
         return False
-    samples = int(np.count_nonzero(search.data.choosing))
-    return search.choosing_misfit(fit) > samples * (EXPLAINED * fit.ratio) ** 2
+    samples = int(np.count_nonzero(estimator.data.validation))
+    return estimator.validation_misfit(fit) > samples * (EXPLAINED * fit.ratio) ** 2
 
 
-def allowance(fit: Fit, data: EvidenceData) -> float:
+def allowance(fit: Fit, data: Data) -> float:
     """Chi2 by which two simulations of an explanation may differ; without an effect they agree."""
     if not fit.explanation.variants:
         return 0.0
@@ -83,21 +83,21 @@ def allowance(fit: Fit, data: EvidenceData) -> float:
 
 def alike(best: Fit) -> float:
     """Chi2 up to which a fit is not told apart from `best` by the training samples."""
-    return best.misfit + TIED * repetition(best)
+    return best.misfit + TIED * best.repetition
 
 
-def tied(best: Fit, among: Iterable[Fit], search: Search) -> list[Fit]:
+def tied(best: Fit, among: Iterable[Fit], estimator: Estimator) -> list[Fit]:
     """Those `among` some fits of a search that the data cannot tell from `best`, itself if it is one of them.
 
-    They fit the training samples alike; one that fails on the choosing samples, where another does not, is out.
+    They fit the training samples alike; one that fails on the validation samples, where another does not, is out.
     """
     limit = alike(best)
     fits = [fit for fit in among if fit.misfit <= limit]
-    errors = [search.choosing_misfit(fit) for fit in fits]
+    errors = [estimator.validation_misfit(fit) for fit in fits]
     highest = _highest(min(errors, default=0.0), best)
     return [fit for fit, error in zip(fits, errors, strict=True) if error <= highest]
 
 
 def _highest(least: float, fit: Fit) -> float:
-    """Misfit on the choosing samples from which a fit is out where another has the `least`."""
-    return max(REFUTED**2 * least, least + SIGNIFICANT * repetition(fit))
+    """Misfit on the validation samples from which a fit is out where another has the `least`."""
+    return max(REFUTED**2 * least, least + SIGNIFICANT * fit.repetition)

@@ -1,21 +1,21 @@
-"""How well a fit knows its parameters: from white noise, or from blocks where the residual is not white."""
+"""How well a fit knows its quantities: from white noise, or from blocks where the residual is not white."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Signal = NDArray[np.float64]
+from pierburg_ros.signals import Flags, Signal
+
 RANK = 1e-5
 """Singular values below this share of the largest are differences of rounding, not information."""
 
 
 @dataclass(frozen=True)
-class Uncertainty:
-    """Covariance of the coordinates, shape (names, names), and the factor from deviation to 95 %.
+class Covariance:
+    """Covariance `matrix` of the coordinates, shape (names, names), and the factor from deviation to 95 %.
 
     `undetermined`: nothing in the recording fixes this coordinate, shape (names,); its covariance is void.
     `noise` is the residual's standard deviation. `white`: the residual looks like sensor noise, so the
@@ -23,16 +23,16 @@ class Uncertainty:
     correlation times long: honest about correlated noise, but it repairs no error of the model.
     """
 
-    covariance: Signal
-    undetermined: NDArray[np.bool_]
+    matrix: Signal
+    undetermined: Flags
     factor: float
     noise: float
     white: bool
     blocks: int
 
 
-def uncertainty(jacobian: Signal, residuals: tuple[Signal, ...]) -> Uncertainty:
-    """Uncertainty of a least-squares fit from its Jacobian, shape (samples, names), and its residuals."""
+def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance:
+    """Covariance of a least-squares fit from its Jacobian, shape (samples, names), and its residuals."""
     residual = np.concatenate(residuals)
     freedom = max(residual.size - jacobian.shape[1], 1)
     variance = float(residual @ residual) / freedom
@@ -40,15 +40,15 @@ def uncertainty(jacobian: Signal, residuals: tuple[Signal, ...]) -> Uncertainty:
     length = max(correlation_length(part) for part in residuals)
     if length <= 1:
         factor = float(stats.norm.ppf(0.975))
-        return Uncertainty(variance * inverse, undetermined, factor, variance**0.5, True, residual.size)
+        return Covariance(variance * inverse, undetermined, factor, variance**0.5, True, residual.size)
     scores = _block_scores(jacobian, residuals, 4 * length)
     blocks = len(scores)
     middle = scores.T @ scores * blocks / max(blocks - 1, 1)
     factor = float(stats.t.ppf(0.975, max(blocks - jacobian.shape[1], 1)))
-    return Uncertainty(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
+    return Covariance(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
 
 
-def _inverse(jacobian: Signal) -> tuple[Signal, NDArray[np.bool_]]:
+def _inverse(jacobian: Signal) -> tuple[Signal, Flags]:
     """Inverse of jacobian' jacobian in the directions that the data fix, and who takes part in others."""
     _, lengths, directions = np.linalg.svd(jacobian, full_matrices=False)
     known = lengths > RANK * max(lengths[0], 1e-300)

@@ -1,32 +1,32 @@
-"""The steps of the converter, which are seen in the samples themselves and need no fit.
-
-Rounding a simulation does not make it fit better while the noise carries samples over the steps: noise of standard
-deviation s leaves an error of 0.8 s d (squared) beside a rounded signal with steps d, and s^2 + d^2 / 12 beside a
-smooth one, which is less up to d = 8 s.
-"""
+"""How residuals count as evidence: the steps of a coarse converter, and samples that say the same thing."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.effects import EFFECT
-
-Signal = NDArray[np.float64]
+from pierburg_ros.effects import EFFECTS
+from pierburg_ros.signals import Signal
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured."""
 OFF_GRID = 0.02
 """Distance from the grid, in steps, that rounding of the file format may cause."""
+CONVERTER = next(effect for effect in EFFECTS if effect.rounds is not None)
+"""The effect whose parameter is the step of the converter: it is seen in the samples and needs no fit."""
 
 
 def coarse_step(measured: Sequence[Signal], noise: float) -> float:
-    """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0."""
+    """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0.
+
+    Rounding a simulation does not make it fit better while the noise carries samples over the steps: noise of standard
+    deviation s leaves an error of 0.8 s d (squared) beside a rounded signal with steps d, and s^2 + d^2 / 12 beside a
+    smooth one, which is less up to d = 8 s.
+    """
     step = min(_grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
-    plausible = EFFECT["sensor_quantization"].parameter("step").plausible[0]
+    plausible = CONVERTER.parameter(CONVERTER.rounds or "").plausible[0]
     return step if step >= plausible and step > COARSE * unrounded else 0.0
 
 
@@ -40,6 +40,21 @@ def counted(residual: Signal, half_step: float) -> float:
         return float(residual @ residual)
     beyond = np.maximum(np.abs(residual) - half_step, 0.0)
     return float(beyond @ beyond) + residual.size * half_step**2 / 3.0
+
+
+def repetition(residual: Signal) -> float:
+    """Samples that count as one: 1 + 2 sum of the autocorrelation up to where it vanishes, at least 1.
+
+    White residuals count in full; a residual with structure left counts by its independent stretches.
+    """
+    centred = residual - residual.mean()
+    size = 1 << int(np.ceil(np.log2(2 * centred.size)))
+    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
+    correlation = np.fft.irfft(spectrum, size)[: centred.size // 4]
+    correlation = correlation / max(float(correlation[0]), 1e-30)
+    vanished = np.flatnonzero(correlation < 0.02)
+    last = int(vanished[0]) if vanished.size else correlation.size
+    return float(1.0 + 2.0 * correlation[1:last].sum())
 
 
 def _grid(measured: Signal) -> float:

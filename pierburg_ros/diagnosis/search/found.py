@@ -1,0 +1,102 @@
+"""What a search has found: the chosen explanation with its last values, and the fits that it is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import qr
+
+from pierburg_ros.diagnosis.search.candidates import jumps
+from pierburg_ros.diagnosis.search.refinement import refined
+from pierburg_ros.diagnosis.search.rivals import fit_rivals
+from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
+from pierburg_ros.diagnosis.search.selection import EXPLAINED, overlooks
+from pierburg_ros.estimation.data import Data, with_validation
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.plant import Model
+from pierburg_ros.workers import workers
+
+INDEPENDENT = 1e-3
+"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """All explanations tried, each with its best fit, and what the choice among them needs.
+
+    `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
+    name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
+    because its budget was spent.
+    """
+
+    data: Data
+    nominal: Model
+    drifts: tuple[str, ...]
+    fits: Mapping[Explanation, Fit]
+    chosen: Fit
+    final: Fit
+    estimates: dict[str, Estimate]
+    recalibrated: Fit
+    exhausted: bool
+
+    @property
+    def estimator(self) -> Estimator:
+        """Fits to the training samples."""
+        return Estimator(self.data, self.nominal)
+
+
+def search(
+    data: Data,
+    nominal: Model,
+    progress: Progress = lambda _: None,
+    jobs: int | None = None,
+    beam: Beam | None = None,
+) -> Found:
+    """Search what `nominal` lacks in `data`, `jobs` fits at a time.
+
+    Where an effect shows only in samples that validate, the search is made again with these training as well.
+    """
+    with workers(jobs) as pool:
+        found = Search(data, nominal, pool, progress, beam)
+        if overlooks(found.run(), found.whole):
+            found = Search(with_validation(data), nominal, pool, progress, beam)
+            found.run()
+        fit_rivals(found, found.preferred())
+        chosen = found.preferred()
+        final, known = _last_values(found, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
+        recalibrated = _recalibrated(found)
+    return Found(
+        found.data, nominal, found.drifts, found.fits, chosen, final, known, recalibrated, found.exhausted
+    )
+
+
+def _last_values(found: Search, chosen: Fit) -> tuple[Fit, dict[str, Estimate]]:
+    """The chosen explanation fitted to all samples but those that test, and its intervals.
+
+    Where events jump, other local minima are searched: a fit may account for all in one beside the lowest.
+    """
+    estimator = Estimator(with_validation(found.data), found.nominal)
+    fit = estimator.fit(chosen.explanation, chosen.values)
+    found.progress(f"{fit.explanation.label}, last values")
+    if jumps(fit.explanation):
+        fit = refined(estimator, fit)
+    return fit, estimates(estimator, fit, found.pool.map)
+
+
+def _recalibrated(found: Search) -> Fit:
+    """The nominal structure with as many of its parameters re-estimated as the recordings tell apart."""
+    nominal = found.whole.at(Explanation(found.drifts))
+    marks = nominal.solution.jacobian / np.maximum(np.linalg.norm(nominal.solution.jacobian, axis=0), 1e-12)
+    _, triangle, order = qr(marks, mode="economic", pivoting=True)
+    count = int(np.sum(np.abs(np.diag(triangle)) > INDEPENDENT))
+    names = {found.drifts[index] for index in order[:count]}
+    explanation = Explanation(tuple(name for name in found.drifts if name in names))
+    drifts = (fit for fit in found.fits.values() if not fit.explanation.variants and not fit.explanation.changed)
+    starts = [found.nominal.values, min(drifts, key=lambda fit: fit.chi2).values]
+    return min(
+        found.pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2
+    )

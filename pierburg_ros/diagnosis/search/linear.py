@@ -1,0 +1,149 @@
+"""What one linear step from a fit promises: for an effect added to it, a drift, a change in the middle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.coordinates import ABOVE
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.estimation.run import Switch
+from pierburg_ros.plant import Model
+from pierburg_ros.signals import Signal
+
+REDATED = np.arange(-4.0, 4.1, 0.25)
+"""Where around its first estimate the moment of a change is looked for again [s]."""
+
+
+def promised(
+    estimator: Estimator, base: Fit, variant: Variant, starts: Sequence[Start]
+) -> list[tuple[float, dict[str, float]]]:
+    """Starts by the chi2 that a linear step from `base` along them promises, best first.
+
+    Each start is simulated once on top of `base`; what re-fitting the base could do about it is projected
+    out; two starts that differ in phase alone count as one with a free phase.
+    """
+    projected = _projection(base)
+    residual = projected(base.solution.residual)
+    found = []
+    for group in _in_quadrature(starts, variant):
+        columns, used = [], []
+        for start in group:
+            changed = _change(estimator, base, variant, start)
+            if changed is not None:
+                columns.append(changed)
+                used.append(start)
+        if not columns:
+            continue
+        change = projected(np.stack(columns, axis=1))
+        scale = np.asarray(np.linalg.lstsq(change, residual, rcond=None)[0], dtype=np.float64)
+        left = residual - change @ scale
+        found.append((float(left @ left), _scaled(base.model, variant, used, scale)))
+    return sorted(found, key=lambda pair: pair[0])
+
+
+def promised_by_drift(fit: Fit) -> float:
+    """The chi2 that one linear step from `fit` promises."""
+    left = _projection(fit)(fit.solution.residual)
+    return float(left @ left)
+
+
+def largest_mark(estimator: Estimator, base: Fit, variant: Variant, starts: Sequence[Start]) -> float:
+    """The largest sum of squares [noise^2] that a start leaves in the signal after a linear re-fit of `base`."""
+    projected = _projection(base)
+    changes = (_change(estimator, base, variant, start) for start in starts)
+    marks = (projected(change) for change in changes if change is not None)
+    return max((float(mark @ mark) for mark in marks), default=0.0)
+
+
+def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list[dict[str, float]]:
+    """Values before and after a change of parameter `name`, and its time, that a linear step promises."""
+    run = estimator.data.runs[0]
+    time = run.time[run.train]
+    probe = estimator.at(Explanation((*base.explanation.drifted, name), base.explanation.variants), base.values)
+    slope = probe.solution.jacobian[: time.size, len(base.explanation.drifted)]
+    residual = base.solution.residual[: time.size]
+    before, weight = np.cumsum(slope * residual), np.cumsum(slope * slope) + 1e-9
+    after, rest = before[-1] - before, weight[-1] - weight + 1e-9
+    gain = before**2 / weight + after**2 / rest
+    starts: list[dict[str, float]] = []
+    for index in np.argsort(gain)[::-1]:
+        if all(abs(time[index] - start[name + WHEN]) > 0.05 * time[-1] for start in starts):
+            shift = np.clip([-before[index] / weight[index], -after[index] / rest[index]], -0.5, 0.5)
+            nominal = base.values[name]
+            starts.append({
+                **base.values, name: nominal * float(np.exp(shift[0])),
+                name + AFTER: nominal * float(np.exp(shift[1])), name + WHEN: float(time[index]),
+            })  # fmt: skip
+        if len(starts) == most:
+            break
+    return starts
+
+
+def redated(estimator: Estimator, fit: Fit) -> Fit:
+    """A fit with a change, its moment looked for again among those around it: the cost has many local minima there."""
+    name = f"{fit.explanation.changed}{WHEN}"
+    coordinates = estimator.coordinates(fit.explanation)
+    moments = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]
+    best = min((fit.values, *moments), key=lambda values: estimator.chi2_at(fit.explanation, values))
+    return estimator.fit(fit.explanation, {**fit.values, name: best[name]})
+
+
+def _change(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
+    """What an effect added to `base` changes in the training samples [noise]; None where it cannot be added."""
+    try:
+        return base.solution.residual - estimator.residual(*_added(base, variant, start))
+    except InputError:
+        return None
+
+
+def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | None]:
+    """The models of `base` with an effect added."""
+    own = {f"{variant.effect}.{name}": value for name, value in (*start.items(), *variant.fixed)}
+    model = base.model.with_values(_stacked(base.model, own))
+    if base.switch is None:
+        return model, None
+    return model, Switch(base.switch.model.with_values(_stacked(base.switch.model, own)), base.switch.time)
+
+
+def _projection(fit: Fit) -> Callable[[Signal], Signal]:
+    """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
+    basis = np.linalg.qr(fit.solution.jacobian)[0]
+    return lambda residual: residual - basis @ (basis.T @ residual)
+
+
+def _stacked(model: Model, own: dict[str, float]) -> dict[str, float]:
+    """`own` values, those counted from a base parameter of `model` put on top of it."""
+    return {name: value + (model.values[ABOVE[name]] if name in ABOVE else 0.0) for name, value in own.items()}
+
+
+def _in_quadrature(starts: Sequence[Start], variant: Variant) -> list[list[Start]]:
+    """Starts in groups that differ in the phase of a ripple alone."""
+    ripple = EFFECT[variant.effect].ripple
+    phase = ripple.phase if ripple else None
+    groups: dict[tuple[tuple[str, float], ...], list[Start]] = {}
+    for start in starts:
+        key = tuple(sorted((name, value) for name, value in start.items() if name != phase))
+        groups.setdefault(key, []).append(start)
+    return list(groups.values())
+
+
+def _scaled(model: Model, variant: Variant, used: Sequence[Start], scale: Signal) -> dict[str, float]:
+    """The start with the strength, and with two starts in quadrature the phase, that the linear step asks for."""
+    effect = EFFECT[variant.effect]
+    values = dict(used[0])
+    if len(used) == 2 and effect.ripple is not None:
+        values[effect.ripple.amplitude] *= float(np.hypot(*scale))
+        values[effect.ripple.phase] = float(np.arctan2(scale[1], scale[0]))
+    else:
+        for name in values:
+            stride = effect.parameter(name).stride
+            if stride is not None:
+                values[name] *= float(np.clip(scale[0], 1.0 / stride, stride))
+    own = {f"{variant.effect}.{name}": value for name, value in values.items()}
+    return {**model.values, **_stacked(model, own)}

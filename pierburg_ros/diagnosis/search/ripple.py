@@ -1,0 +1,90 @@
+"""Ripples of the load over angle or time, beside other changes: descents through stretches of the recordings."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from concurrent.futures import Executor
+
+from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
+from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
+from pierburg_ros.diagnosis.search.candidates import possible
+from pierburg_ros.effects.effect import Ripple
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant
+
+LENGTHS = (0.5, 1.0, 2.0, 4.0)
+"""Lengths of the stretches [s] that are fitted in turn, before whole recordings."""
+AMPLITUDES = (0.006, 0.012, 0.025)
+"""Amplitudes [N.m] from which a descent may start."""
+PHASES = tuple(math.pi / 4 * number for number in range(8))
+"""Phases [rad] from which it may."""
+BRIEF = 8
+"""Iterations of a descent through stretches of one length."""
+SHOWN = 0.75
+"""Error over the shortest stretches, over that without the ripple, from which the ripple is not followed up."""
+FOLLOWED = 2
+"""How many explanations are."""
+
+
+def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:
+    """The effects that may be a sine in the load of this actuator, in the order of the signal path."""
+    declared = ((effect.id, effect.ripple) for effect in possible(estimator.data.actuator))
+    return [
+        (Variant(effect, (ripple.amplitude, ripple.rhythm, ripple.phase)), ripple)
+        for effect, ripple in declared
+        if ripple is not None
+    ]
+
+
+def through_stretches(
+    estimator: Estimator, variant: Variant, ripple: Ripple, bases: Mapping[Explanation, Fit], pool: Executor
+) -> list[Fit]:
+    """Fits of explanations with a `ripple`, each grown on the fit without it in `bases`: those where it explains most.
+
+    The shaft rests where the ripple lets it, and setting off at the wrong crest displaces all that follows: a descent
+    over a whole recording ends where one such moment is wrong. Stretches start from the measured state, and lengthen
+    (multiple shooting; Voss, Timmer and Kurths, Nonlinear dynamical system identification from uncertain and indirect
+    measurements, Int. J. Bifurcation and Chaos 14, 2004). Rhythms start from those of the missing torque. What
+    remembers longer than a stretch, or changes in the middle, cannot start afresh and is left out; where the ripple
+    explains little, the list is empty.
+    """
+    grown = [(e, base) for e, base in bases.items() if e.changed is None and forgotten(e.effects)]
+    if not grown:
+        return []
+    held = f"{variant.effect}.{ripple.rhythm}" if ripple.whole else None
+    short, *longer = (Estimator(restarted(estimator.data, length), estimator.nominal) for length in LENGTHS)
+    start = _scanned(estimator, short, variant, ripple, *min(grown, key=lambda pair: pair[1].chi2), pool)
+
+    def descended(pair: tuple[Explanation, Fit]) -> Fit:
+        return short.fit(pair[0], {**pair[1].values, **start}, BRIEF, held=held)
+
+    def finished(fit: Fit) -> Fit:
+        for stretches in longer:
+            fit = stretches.fit(fit.explanation, fit.values, BRIEF, held=held)
+        if held is not None:
+            fit = estimator.fit(fit.explanation, fit.values, held=held)
+        return estimator.fit(fit.explanation, fit.values)
+
+    without = min(short.restated(base).ratio for _, base in grown)
+    shown = [fit for fit in pool.map(descended, grown) if fit.ratio < SHOWN * without]
+    return list(pool.map(finished, sorted(shown, key=lambda fit: fit.ratio)[:FOLLOWED]))
+
+
+def _scanned(
+    estimator: Estimator,
+    short: Estimator,
+    variant: Variant,
+    ripple: Ripple,
+    explanation: Explanation,
+    base: Fit,
+    pool: Executor,
+) -> dict[str, float]:
+    """The ripple that leaves least over the shortest stretches on top of `base`."""
+    missing = missing_torque(estimator.data, estimator.data.runs[0], base.model)
+    names = [f"{variant.effect}.{name}" for name in variant.free]
+    rows = itertools.product(AMPLITUDES, dict.fromkeys(ripple.rhythms(missing)), PHASES)
+    starts = [dict(zip(names, row, strict=True)) for row in rows]
+    costs = pool.map(lambda start: short.chi2_at(explanation, {**base.values, **start}), starts)
+    return min(zip(costs, starts, strict=True), key=lambda pair: pair[0])[1]

@@ -1,0 +1,78 @@
+"""What else could stand for each quantity of the best explanation: fitted, so that ties can be told."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+from pierburg_ros.diagnosis.search.race import BRIEF, NEAR
+from pierburg_ros.diagnosis.search.search import Search
+from pierburg_ros.diagnosis.search.selection import alike
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, quantities, without
+
+FADING = (0.75, 0.5, 0.25, 0.0)
+"""Shares of an effect's strength at which what may stand for it is fitted in turn."""
+
+
+def fit_rivals(search: Search, best: Fit) -> None:
+    """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters."""
+    limit = alike(best)
+    for quantity in quantities(best.explanation):
+        rest = without(best.explanation, quantity)
+        search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
+        if isinstance(quantity, Variant):
+            for rival in _by_parameters(rest, search.drifts):
+                known = search.fits.get(rival)
+                if known is None or known.misfit > limit:
+                    _take_over(search, rival, quantity, best)
+
+
+def _by_parameters(rest: Explanation, drifts: tuple[str, ...]) -> Iterator[Explanation]:
+    """`rest` with one or two more parameters that drift."""
+    free = [name for name in drifts if name not in rest.drifted and name != rest.changed]
+    for others in (*itertools.combinations(free, 1), *itertools.combinations(free, 2)):
+        key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), drifts)
+        if key is not None:
+            yield key
+
+
+def _take_over(search: Search, explanation: Explanation, fading: Variant, best: Fit) -> None:
+    """Fit an explanation that stands for an effect of `best` by other means, if it keeps up as the effect fades.
+
+    In one step the others would have to take over all of it at once, and events would jump; so would they if its
+    other effects gave way meanwhile.
+    """
+    values = best.values
+    for start in _at_once(explanation, fading, best):
+        search.add(explanation, start)
+    held = tuple(_faded(variant, best, 1.0) for variant in explanation.variants)
+    for share in FADING:
+        effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
+        stage = Explanation(explanation.drifted, effects, explanation.changed)
+        try:
+            look = search.glance.fit(stage, values, BRIEF)
+        except InputError:
+            continue
+        if look.ratio > NEAR * best.ratio:
+            return
+        values = look.values
+    search.add(explanation, search.add(explanation, values).values)
+
+
+def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[dict[str, float]]:
+    """Values at which a base parameter is what the effect was all the time, if there is such a one."""
+    constant = EFFECT[fading.effect].constant_part
+    if constant is not None and constant[1] in explanation.drifted:
+        own, base = constant
+        yield {**best.values, base: best.values[base] + best.values[f"{fading.effect}.{own}"]}
+
+
+def _faded(variant: Variant, fit: Fit, share: float) -> Variant:
+    """The effect as `fit` has it, fixed at a share of its strength."""
+    declared = EFFECT[variant.effect]
+    values = {name: fit.model.values[f"{variant.effect}.{name}"] for name in declared.names}
+    scaled = {name: value * (share if name in declared.strength else 1.0) for name, value in values.items()}
+    return Variant(variant.effect, (), tuple(scaled.items()))

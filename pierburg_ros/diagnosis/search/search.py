@@ -1,0 +1,247 @@
+"""The search: explanations from the smallest up, each grown by one more quantity, until another gains too little."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.diagnosis.search.candidates import drifting, jumps
+from pierburg_ros.diagnosis.search.race import winners
+from pierburg_ros.diagnosis.search.refinement import refined
+from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
+from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
+from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
+from pierburg_ros.plant import Model
+
+Progress = Callable[[str], None]
+
+GLANCE = 24.0
+"""How much of a recording [s] a first look takes in."""
+
+
+@dataclass(frozen=True)
+class Beam:
+    """How wide, how deep and how long a search goes.
+
+    Up to `width` explanations of one size are grown further, besides every single drift, and explanations have up to
+    `depth` quantities. Of all additions to them, the `ahead` most promising are fitted before the others. Once
+    `budget` prospects have been looked at, explanations no longer grow.
+    """
+
+    width: int = 3
+    depth: int = 3
+    ahead: int = 24
+    budget: int = 1500
+
+
+class Search:
+    """All explanations tried so far, each with its best fit, and the means to try more."""
+
+    def __init__(
+        self, data: Data, nominal: Model, pool: Executor, progress: Progress = lambda _: None, beam: Beam | None = None
+    ) -> None:
+        self.data = data
+        self.nominal = nominal
+        self.beam = beam or Beam()
+        self.progress = progress
+        self.drifts = drifting(nominal)
+        self.whole = Estimator(data, nominal)
+        self.glance = Estimator(data.cut(GLANCE), nominal)
+        self.fits: dict[Explanation, Fit] = {}
+        self.expanded: set[Explanation] = set()
+        self.looked_at = 0
+        self.pool = pool
+
+    def run(self) -> Fit:
+        """Grow explanations until the best cannot be bettered by one more quantity; gives that best one."""
+        best = self.add(Explanation())
+        while best.explanation.size < self.beam.depth and not accounts_for_all(best, self.data):
+            size = best.explanation.size
+            self._grow(best)
+            best = self._pruned()
+            if best.explanation.size <= size or self.exhausted:
+                break
+        return best
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the budget is spent."""
+        return self.looked_at >= self.beam.budget
+
+    def _grow(self, best: Fit) -> None:
+        """Look for explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
+        size = best.explanation.size
+        seeds = self._seeds(best)
+        if len(seeds) > 1:
+            self._fit_most_promising(seeds)
+            if self._complete(size + 1):
+                return
+            self.refine(self.of_size(size))
+            best = self.preferred(size)
+            if accounts_for_all(best, self.data):
+                return
+            seeds = self._seeds(best)
+            self._fit_ripples(seeds)
+        for seed in seeds:
+            if self._complete(size + 1) or self.exhausted:
+                return
+            self.expand(seed)
+            if self._wants_refinement(best, size + 1):
+                self.refine(self.of_size(size + 1))
+
+    def _wants_refinement(self, best: Fit, size: int) -> bool:
+        """Whether fits of a `size` grown from the `best` smaller one should be refined now.
+
+        Single quantities wait until a pair of them has been tried, unless none betters the nominal model.
+        """
+        if adequate(best) or self._complete(size):
+            return False
+        return size > 1 or self.preferred(1).explanation.size == 0
+
+    def _seeds(self, best: Fit) -> list[Fit]:
+        """Fits of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
+
+        Single drifts come first: an effect beside a drift is more frequent than two effects, and found sooner. A
+        change in the middle has more freedom than a drift, and must fit that much better.
+        """
+        size = best.explanation.size
+        if adequate(best):
+            return [best]
+        rivals = self.of_size(size)
+        steady = min((fit.chi2 for fit in rivals if fit.explanation.changed is None), default=np.inf)
+        rivals = [fit for fit in rivals if fit.explanation.changed is None or fit.chi2 < 0.5 * steady]
+        drifts = [fit for fit in rivals if not fit.explanation.variants and size == 1]
+        return list({id(fit): fit for fit in (*drifts, *rivals[: self.beam.width])}.values())
+
+    def _fit_most_promising(self, seeds: Sequence[Fit]) -> None:
+        """Fit what linear steps promise most on any of the `seeds`: often one of them accounts for all."""
+        prospects = [prospect for seed in seeds for prospect in self._screened(seed)]
+        self._race(most_promising(prospects, self.beam.ahead), most=self.beam.ahead // 3)
+
+    def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
+        """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""
+        for variant, ripple in ripples(self.whole):
+            self.progress(f"{variant.label}, through stretches")
+            grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
+            bases = {explanation: seed for explanation, seed in grown if explanation is not None}
+            fits = through_stretches(self.whole, variant, ripple, bases, self.pool)
+            self.refine([self.keep(fit) for fit in fits])
+
+    def expand(self, seed: Fit) -> list[Fit]:
+        """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""
+        if seed.explanation in self.expanded:
+            return []
+        self.expanded.add(seed.explanation)
+        prospects = self._screened(seed)
+        known = self.best_of_size(seed.explanation.size + 1)
+        if known is not None and adequate(known) and not adequate(seed):
+            prospects = most_promising(prospects, self.beam.ahead // 3)
+        return self._race(prospects)
+
+    def _screened(self, seed: Fit) -> list[Prospect]:
+        """What has not been fitted yet of all that may be added to `seed`."""
+        found = screened(seed, self.whole, self.glance, self.drifts, self.pool, self.progress)
+        return [prospect for prospect in found if prospect.explanation not in self.fits]
+
+    def _race(self, prospects: Sequence[Prospect], most: int | None = None) -> list[Fit]:
+        """Whole fits of the prospects that come out ahead."""
+        if not prospects:
+            return []
+        self.looked_at += len(prospects)
+        known = self.best_of_size(prospects[0].explanation.size)
+        leading = dict.fromkeys((self.whole, self.glance), known.ratio if known else np.inf)
+        ahead = winners(prospects, leading, self.pool, self.progress, most)
+        return list(self.pool.map(lambda look: self.add(look.explanation, look.values), ahead))
+
+    def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
+        """Fit an explanation and keep it if it is the best of its kind so far."""
+        self.progress(explanation.label)
+        return self.keep(self.whole.fit(explanation, start))
+
+    def keep(self, fit: Fit) -> Fit:
+        """The best fit of the same explanation so far, `fit` included."""
+        known = self.fits.get(fit.explanation)
+        if known is None or fit.chi2 < known.chi2:
+            self.fits[fit.explanation] = fit
+        return self.fits[fit.explanation]
+
+    def refine(self, fits: Iterable[Fit]) -> None:
+        """Search other local minima of the fits of one size that may gain by it, once each."""
+        fits = list(fits)
+        best = self.best_of_size(fits[0].explanation.size) if fits else None
+        if best is None:
+            return
+        chosen = [fit for fit in fits if _near(fit, best)]
+        if not adequate(best) and best.explanation.variants and (jumps(best.explanation) or best.ratio < NEARLY):
+            chosen.append(best)
+        chosen = sorted(chosen, key=lambda fit: fit.chi2)[:REFINED]
+        list(self.pool.map(self._refine, chosen))
+
+    def _refine(self, fit: Fit) -> None:
+        if not fit.refined:
+            self.progress(f"{fit.explanation.label}, other local minima")
+            self.fits[fit.explanation] = refined(self.whole, fit)
+
+    def preferred(self, largest: int | None = None) -> Fit:
+        """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects."""
+        best = self.best_of_size(0)
+        assert best is not None
+        for size in range(1, (self.beam.depth if largest is None else largest) + 1):
+            rivals = self.of_size(size)[: self.beam.width]
+            best = next((fit for fit in rivals if betters(fit, best, self.whole)), best)
+        return min(tied(best, self.of_size(best.explanation.size), self.whole), key=_preference)
+
+    def best_of_size(self, size: int) -> Fit | None:
+        """The best fit among explanations of `size` quantities, None where none was tried."""
+        return next(iter(self.of_size(size)), None)
+
+    def of_size(self, size: int) -> list[Fit]:
+        """The fits of explanations of `size` quantities, the best first."""
+        fits = (fit for fit in list(self.fits.values()) if fit.explanation.size == size)
+        return sorted(fits, key=lambda fit: fit.chi2)
+
+    def _complete(self, size: int) -> bool:
+        """Whether an explanation of a size leaves nothing to look for among its like."""
+        best = self.best_of_size(size)
+        return best is not None and complete(best)
+
+    def _pruned(self) -> Fit:
+        """The preferred explanation after each of its parts has been fitted again from its values.
+
+        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins.
+        """
+        best = self.preferred()
+        while True:
+            for quantity in quantities(best.explanation):
+                smaller = self.add(without(best.explanation, quantity), best.values)
+                if _near(smaller, best):
+                    self._refine(smaller)
+            kept = self.preferred()
+            if kept.explanation.size >= best.explanation.size:
+                return kept
+            best = kept
+
+
+NEARLY = 5.0
+"""Training error over noise up to which the best explanation may only have stopped too early."""
+REFINED = 2
+"""How many fits of one size are refined in one go."""
+COMPARABLE = 1.5
+"""Training error over that of the best explanation of its size up to which a fit is refined."""
+
+
+def _near(fit: Fit, best: Fit) -> bool:
+    """Whether events jump in a fit, and it comes near the best without being its equal."""
+    return jumps(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.misfit
+
+
+def _preference(fit: Fit) -> tuple[int, bool, int, float]:
+    """Order among explanations that fit alike: least effects, a drift before a change, least numbers, then by fit."""
+    explanation = fit.explanation
+    return len(explanation.variants), explanation.changed is not None, len(explanation.names), fit.chi2

@@ -1,0 +1,153 @@
+"""The coordinates in which parameters are searched: of order one, logarithmic where that makes sense, within range."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.estimation.explanation import AFTER, WHEN
+from pierburg_ros.plant import Model
+from pierburg_ros.signals import Signal
+
+DRIFT = math.log(6.0)
+"""A base parameter is searched within this factor (logarithm) of its nominal value, either way."""
+WIDTH = 20.0
+"""An effect's parameter is searched up to so many times what is plausible."""
+CAP = 0.98
+"""Largest share of the parameter that another one has to stay below: beyond it the simulation would divide by what
+is left, 2 % here, and every value there looks alike."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One quantity as a search moves it: value = scale coordinate, or scale exp(coordinate) where logarithmic.
+
+    `lower` and `upper` bound the coordinate, `minimum` and `maximum` the value; `step` is that of finite differences.
+    """
+
+    scale: float
+    logarithmic: bool
+    lower: float
+    upper: float
+    minimum: float
+    maximum: float
+    step: float
+
+    def value(self, coordinate: float) -> float:
+        """The value at a coordinate."""
+        value = self.scale * (math.exp(coordinate) if self.logarithmic else coordinate)
+        return min(max(value, self.minimum), self.maximum)
+
+    def coordinate(self, value: float) -> float:
+        """The coordinate of a value."""
+        if self.logarithmic:
+            return math.log(max(value, 1e-9 * self.scale) / self.scale)
+        return value / self.scale
+
+
+class Coordinates:
+    """Between values by dotted name and the numbers that a search moves, one for each of `names`.
+
+    A positive base parameter is searched by the logarithm of its ratio to the `nominal` one, an effect's parameter as
+    it declares, a moment as a share of the `duration` [s].
+    """
+
+    def __init__(self, names: tuple[str, ...], nominal: Model, duration: float) -> None:
+        self.names = names
+        self.nominal = nominal
+        self.axes = tuple(_axis(name, nominal, duration) for name in names)
+        self.bounds = (
+            np.array([axis.lower for axis in self.axes]),
+            np.array([axis.upper for axis in self.axes]),
+        )
+        self.steps = np.array([axis.step for axis in self.axes])
+
+    def values(self, point: Signal) -> dict[str, float]:
+        """Values by dotted name at `point`."""
+        result = {
+            name: axis.value(float(x)) for name, axis, x in zip(self.names, self.axes, point, strict=True)
+        }
+        for name, below in ABOVE.items():
+            if name in result:
+                highest = self.axes[self.names.index(name)].maximum
+                result[name] = min(result[name] + result.get(below, self.nominal.values[below]), highest)
+        return result
+
+    def point(self, values: Mapping[str, float]) -> Signal:
+        """The point with these `values`; a change of which they say nothing is one to the same value, half way."""
+        result = np.empty(len(self.names))
+        for i, (name, axis) in enumerate(zip(self.names, self.axes, strict=True)):
+            missing = 0.5 * axis.scale if name.endswith(WHEN) else values.get(name.removesuffix(AFTER), 0.0)
+            value = values.get(name, missing)
+            if name in ABOVE:
+                value -= values.get(ABOVE[name], self.nominal.values[ABOVE[name]])
+            result[i] = axis.coordinate(value)
+        return np.clip(result, *self.bounds)
+
+    def within(self, values: Mapping[str, float]) -> dict[str, float]:
+        """`values` with those that are searched brought within their bounds."""
+        return self.values(self.point(values))
+
+
+ABOVE = {
+    f"{effect.id}.{parameter.name}": parameter.above
+    for effect in EFFECTS
+    for parameter in effect.parameters
+    if parameter.above is not None
+}
+"""Parameters that are counted from a base parameter, by dotted name."""
+BELOW = {
+    f"{effect.id}.{parameter.name}": parameter.below
+    for effect in EFFECTS
+    for parameter in effect.parameters
+    if parameter.below is not None
+}
+"""Parameters that stay below a base parameter, by dotted name."""
+
+
+def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
+    """`values` with pairs that must keep an order put in order; what they lack is nominal."""
+    ordered = dict(values)
+    for name, above in ABOVE.items():
+        value, least = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, above))
+        if value != 0.0 and value < least:
+            ordered[name] = least
+    for name, below in BELOW.items():
+        value, most = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, below))
+        if value != 0.0 and value >= most:
+            ordered[name] = CAP * most
+    return ordered
+
+
+def _axis(name: str, nominal: Model, duration: float) -> Axis:
+    if name.endswith(WHEN):
+        return Axis(duration, False, 0.03, 0.97, 0.0, duration, 0.0005)
+    name = name.removesuffix(AFTER)
+    return _axis_of_effect(name) if "." in name else _axis_of_base(name, nominal)
+
+
+def _axis_of_base(name: str, nominal: Model) -> Axis:
+    minimum, maximum = nominal.range(name)
+    value = nominal.values[name]
+    if value > 0.0 and minimum >= 0.0:
+        lower = max(-DRIFT, math.log(max(minimum / value, 1e-12)))
+        return Axis(value, True, lower, min(DRIFT, math.log(maximum / value)), minimum, maximum, 0.0005)
+    scale = abs(value) or 0.01 * (maximum - minimum)
+    return Axis(scale, False, minimum / scale, maximum / scale, minimum, maximum, 0.0005)
+
+
+def _axis_of_effect(name: str) -> Axis:
+    effect, own = name.split(".")
+    p = EFFECT[effect].parameter(own)
+    low, high = p.plausible
+    minimum = p.minimum if p.least is None else p.least
+    if p.logarithmic:
+        lower, upper = math.log(max(minimum, low / 10.0, 1e-9)), math.log(min(p.maximum, high * 10.0))
+        return Axis(1.0, True, lower, upper, p.minimum, p.maximum, 0.001)
+    scale = max(abs(low), abs(high))
+    lower, upper = max(minimum, -WIDTH * scale) / scale, min(p.maximum, WIDTH * scale) / scale
+    return Axis(scale, False, lower, upper, p.minimum, p.maximum, 0.0002 if p.rhythm else 0.001)

@@ -1,0 +1,123 @@
+"""All recordings of one actuator as a fit sees them: runs, noise, and which samples train, validate or test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.likelihood import coarse_step
+from pierburg_ros.estimation.run import Run, Switch, run_of
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
+from pierburg_ros.signals import Flags, Signal
+
+BLOCK = 1.5
+"""Length of the blocks [s] that train, validate and test in turn: some movements and standstills in each part."""
+CYCLE = 8
+"""Of so many blocks one validates and one tests; the others train."""
+VALIDATION, TEST = 2, 6
+"""Which they are."""
+
+
+@dataclass(frozen=True)
+class Data:
+    """All recordings of one actuator.
+
+    `noise` is the standard deviation of the sensor noise, `step` that of the converter where it is coarse beside the
+    noise, otherwise 0, both in the measured unit.
+    """
+
+    actuator: Actuator
+    runs: tuple[Run, ...]
+    noise: float
+    step: float = 0.0
+
+    def residual(self, model: Model, switch: Switch | None = None) -> Signal:
+        """Measured minus simulated over all runs, shape (samples,), in units of the noise.
+
+        Very large, but a number, from where a model cannot be simulated.
+        """
+        parts = [run.measured - run.simulated(model, switch) for run in self.runs]
+        return np.nan_to_num(np.concatenate(parts) / self.noise, nan=1e3, posinf=1e3, neginf=-1e3)
+
+    @property
+    def half_step(self) -> float:
+        """Half a step of the converter in units of the noise, 0 where steps are fine."""
+        return 0.5 * self.step / self.noise
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample of the first run [s]."""
+        return float(self.runs[0].time[-1])
+
+    def cut(self, duration: float) -> Data:
+        """The first `duration` [s] of each run."""
+        return replace(self, runs=tuple(run.cut(duration) for run in self.runs))
+
+    @property
+    def train(self) -> Flags:
+        """Which samples of `residual` train."""
+        return np.concatenate([run.train for run in self.runs])
+
+    @property
+    def validation(self) -> Flags:
+        """Which samples of `residual` choose between explanations that fit those that train alike."""
+        return np.concatenate([run.validation for run in self.runs])
+
+    @property
+    def test(self) -> Flags:
+        """Which samples of `residual` neither fit nor choice has used."""
+        return ~(self.train | self.validation)
+
+
+def data_of(recordings: Sequence[Recording], model: Model) -> Data:
+    """The recordings, all of them training; noise and converter are estimated from them. InputError where unfit."""
+    if not recordings:
+        raise InputError("There is no recording to fit; expected one or more. Name a file.")
+    if len({recording.quantity for recording in recordings}) > 1:
+        raise InputError("The recordings hold Hall voltage and position; expected one quantity. Fit them one by one.")
+    runs = tuple(run_of(recording, model) for recording in recordings)
+    noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
+    return Data(model.actuator, runs, noise, coarse_step([run.measured for run in runs], noise))
+
+
+def in_parts(data: Data) -> Data:
+    """`data` with its samples split into blocks that train, validate and test."""
+
+    def split(run: Run) -> Run:
+        number = _block(run.time) % CYCLE
+        return replace(run, train=~np.isin(number, (VALIDATION, TEST)), validation=number == VALIDATION)
+
+    return replace(data, runs=tuple(split(run) for run in data.runs))
+
+
+def held_back(data: Data) -> Data:
+    """`data` with a third of the training blocks kept from the fit as well, for a choice before the last one."""
+    runs = (run.trained_on(run.train & (_block(run.time) % (CYCLE // 2) != 0)) for run in data.runs)
+    return replace(data, runs=tuple(runs))
+
+
+def with_validation(data: Data) -> Data:
+    """`data` with what has validated training as well, for the last fit after the choice."""
+    return replace(data, runs=tuple(run.trained_on(run.train | run.validation) for run in data.runs))
+
+
+def all_training(data: Data) -> Data:
+    """`data` with every sample training."""
+    return replace(data, runs=tuple(run.trained_on(np.ones_like(run.train)) for run in data.runs))
+
+
+def rms(values: Signal) -> float:
+    """Root mean square, in the unit of `values`."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _block(time: Signal) -> np.ndarray:
+    """Number of the block of each sample; a short recording gets shorter blocks."""
+    length = min(BLOCK, (time[-1] - time[0]) / (2 * CYCLE))
+    return np.asarray(np.floor((time - time[0]) / length).astype(int))

@@ -1,0 +1,141 @@
+"""How sure the values of a fit are: 95 % intervals, from the curvature of the cost and along its valley."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.covariance import Covariance, covariance_of
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.slopes import sharp
+from pierburg_ros.signals import Signal
+
+SURE = 1.96
+"""Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""
+DOUBLINGS = 7
+"""How often the reach of an interval is doubled at most: 128 times what the curvature says."""
+DENTED = 12.0
+"""Rise of chi2 allowed where events jump: the best of many local minima is lower than the true one by luck."""
+PATIENCE = 3
+"""How many reaches without success end the search where events jump: a fit may have ended in a local minimum."""
+FIRST = 1e-5
+"""Share of its range by which a quantity without a slope is moved first."""
+BRIEF = 4
+"""Iterations in which the other quantities are fitted again."""
+HALF_KNOWN = 0.5
+"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable."""
+
+Map = Callable[..., Iterable[Any]]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its 95 % interval and whether the data fix it."""
+
+    value: float
+    low: float
+    high: float
+    identifiable: bool
+
+
+def covariance(estimator: Estimator, fit: Fit) -> tuple[Covariance, Signal]:
+    """Covariance of a fit's coordinates, and the slopes [noise] that it comes from, shape (samples, quantities)."""
+    coordinates = estimator.coordinates(fit.explanation)
+
+    def residual(point: Signal) -> Signal:
+        return estimator.residual_at(fit.explanation, coordinates, point)
+
+    slopes = sharp(residual, fit.solution.point, coordinates.bounds)
+    ends = np.cumsum([int(np.count_nonzero(run.train)) for run in estimator.data.runs])[:-1]
+    return covariance_of(slopes, tuple(np.split(fit.solution.residual, ends))), slopes
+
+
+def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Estimate]:
+    """Value and interval of each free quantity by dotted name; `over` maps a function over the ends to be found.
+
+    A first interval is that of the covariance. Where events jump with the values, the slope at the fit is that of a
+    local minimum and the interval too short: each end is therefore moved on while the others, fitted again, keep chi2
+    within what 95 % allows (profile likelihood; Murphy and van der Vaart, On Profile Likelihood, J. Am. Stat. Assoc.
+    95, 2000).
+    """
+    names = fit.explanation.names
+    if not names:
+        return {}
+    known = covariance(estimator, fit)[0]
+    reach = known.factor * np.sqrt(np.maximum(np.diagonal(known.matrix), 0.0))
+    jumps = any(EFFECT[effect].jumps for effect in fit.explanation.effects)
+    limit = fit.chi2 + (DENTED if jumps else SURE**2) * fit.spread
+    coordinates = estimator.coordinates(fit.explanation)
+    sides = [
+        (place, side * (_plateau(estimator, fit, place, side, limit) if unknown else float(reach[place])))
+        for place, unknown in enumerate(known.undetermined)
+        for side in (-1.0, 1.0)
+    ]
+    patience = PATIENCE if jumps else 1
+    ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, patience), sides)
+    allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
+    result = {}
+    for name in names:
+        low, high = (pick(values[name] for values in allowed) for pick in (min, max))
+        value = fit.values[name]
+        identifiable = max(high - value, value - low) <= HALF_KNOWN * abs(value)
+        result[name] = Estimate(value, min(low, value), max(high, value), identifiable)
+    return result
+
+
+def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: float) -> float:
+    """How far a quantity without a slope moves alone until chi2 passes the `limit`, to a factor of two.
+
+    At most to its bound. A load may begin at any moment while the shaft stands still.
+    """
+    coordinates = estimator.coordinates(fit.explanation)
+    lower, upper = (float(bound[place]) for bound in coordinates.bounds)
+    reach = FIRST * (upper - lower)
+    while reach < upper - lower:
+        point = fit.solution.point.copy()
+        point[place] = np.clip(point[place] + side * reach, lower, upper)
+        if estimator.chi2_at(fit.explanation, coordinates.values(point)) > limit:
+            break
+        reach *= 2.0
+    return reach
+
+
+def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:
+    """Points that an interval must hold: `reach` away along one of the coordinates, then in the valley.
+
+    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`: from where the valley
+    leads, from where it was last, and from where they are at the best. `patience`: reaches without success that end it.
+    """
+    coordinates = estimator.coordinates(fit.explanation)
+    lower, upper = coordinates.bounds
+    name = fit.explanation.names[place]
+    best = fit.solution.point
+
+    def moved(distance: float, valley: Signal) -> Signal:
+        point = np.clip(best + valley, lower, upper)
+        point[place] = np.clip(best[place] + distance, lower[place], upper[place])
+        return np.asarray(point)
+
+    nowhere = np.zeros(best.size)
+    points, valley = [moved(reach, nowhere)], nowhere
+    for _ in range(DOUBLINGS):
+        starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
+        tried = {tuple(start): start for start in starts}.values()
+        fits = [
+            estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried
+        ]
+        there = min(fits, key=lambda solution: solution.cost)
+        if there.cost <= limit:
+            points.append(there.point)
+            valley = there.point - best
+        else:
+            patience -= 1
+        if patience == 0 or not lower[place] < there.point[place] < upper[place]:
+            break
+        reach *= 2.0
+    return points

@@ -1,0 +1,122 @@
+"""A recording ready to be simulated many times: its inputs, its samples, and where the simulation starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.start import Start, from_standstill
+from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
+from pierburg_ros.plant.decode import Decoding
+from pierburg_ros.recording import Recording
+from pierburg_ros.signals import Flags, Signal
+
+
+@dataclass(frozen=True)
+class Switch:
+    """Another model that takes over at `time` [s]: a parameter that changed in the middle of a recording."""
+
+    model: Model
+    time: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording, ready to be simulated.
+
+    `time` [s] and `measured` (in the recording's unit), shape (samples,); `start` is what the first samples say.
+    `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
+    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoded`: a position that a Hall
+    sensor's voltage was turned into, by the actuator's nominal ends.
+    """
+
+    name: str
+    inputs: Inputs
+    time: Signal
+    measured: Signal
+    quantity: str
+    start: Start
+    train: Flags
+    validation: Flags
+    decoded: Decoding | None = None
+
+    def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
+        """What `model` makes of the inputs, in the measured unit, shape (samples,).
+
+        With a `switch` another model takes over in the middle, and the state goes on.
+        """
+        start = self.start.state(model, self.quantity)
+        if switch is None:
+            output = simulate(model, self.inputs, self.time, *start)
+        else:
+            output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
+        return output if self.decoded is None else self.decoded.angle(output)
+
+    def cut(self, duration: float) -> Run:
+        """The first `duration` [s] of the run."""
+        return self.part(slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2)))
+
+    def part(self, kept: slice) -> Run:
+        """Some successive samples of the run."""
+        return replace(
+            self,
+            time=self.time[kept],
+            measured=self.measured[kept],
+            train=self.train[kept],
+            validation=self.validation[kept],
+        )
+
+    def trained_on(self, train: Flags) -> Run:
+        """The run with other samples training, shape (samples,); what trains validates no longer."""
+        return replace(self, train=train, validation=self.validation & ~train)
+
+
+def run_of(recording: Recording, model: Model) -> Run:
+    """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit."""
+    actuator = model.actuator
+    if recording.quantity == "hall_voltage" and actuator.quantity == "position":
+        raise InputError(
+            f"{recording.name} holds a Hall voltage and actuator {actuator.name} measures its angle;"
+            " expected a recorded position. Choose another --actuator."
+        )
+    recording = from_standstill(recording, model)
+    start = Start.of(recording.time, recording.measured)
+    decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
+    return Run(
+        recording.name,
+        inputs_in_force(recording, start, model),
+        recording.time,
+        recording.measured,
+        recording.quantity,
+        start,
+        np.ones(recording.time.size, dtype=bool),
+        np.zeros(recording.time.size, dtype=bool),
+        Decoding.of(Model.nominal(actuator)) if decodes else None,
+    )
+
+
+def inputs_of(recording: Recording) -> Inputs:
+    """What drove the actuator in `recording`: duty, and supply voltage and bridge state where recorded.
+
+    Each channel holds its value until its next one. Before its first value duty is 0, the bridge enabled, the
+    supply voltage the first one recorded.
+    """
+    channels = [recording.duty, recording.supply_voltage, recording.enabled]
+    times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
+    duty = np.clip(recording.duty.at(times, before=0.0), -1.0, 1.0)
+    supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
+    enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
+    return Inputs(times, duty, supply, enabled)
+
+
+def inputs_in_force(recording: Recording, start: Start, model: Model) -> Inputs:
+    """`inputs_of` a recording of a running actuator, seen to begin at `start`.
+
+    Away from the closed stop only a duty holds the shaft against its spring: there the first one has been in force
+    before the recording began.
+    """
+    inputs = inputs_of(recording)
+    angle, _ = start.state(model, recording.quantity)
+    return inputs.held_before() if angle > model.actuator.lower_stop else inputs

@@ -1,0 +1,83 @@
+"""The slopes of a residual at a fit, as sharp as a covariance needs them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pierburg_ros.signals import Signal
+
+FINE = 1e-5
+"""Difference step: a covariance needs the slope within its own interval."""
+FINEST = 1e-7
+"""Difference step where a bend lies within the fine one; the stiffer effects are too noisy for it."""
+SMOOTH = 1e-4
+"""Largest relative difference of the slopes ahead and behind where the residual is smooth."""
+WEAK = 0.05
+"""A coordinate that its own slope tells no better than this may still be told by jumps."""
+JUMPS = (1e-4, 1e-3, 5e-3)
+"""Steps tried, finest first, for a quantity that acts in jumps."""
+
+Residual = Callable[[Signal], Signal]
+Bounds = tuple[Signal, Signal]
+
+
+def central(residual: Residual, point: Signal, bounds: Bounds, step: float) -> Signal:
+    """Derivative of `residual` by central differences, one-sided at a bound; shape (samples, quantities)."""
+    ahead = np.minimum(point + step * np.eye(point.size), bounds[1])
+    behind = np.maximum(point - step * np.eye(point.size), bounds[0])
+    distance = np.maximum(np.diagonal(ahead - behind), 1e-300)
+    columns = [
+        (residual(after) - residual(before)) / width for after, before, width in zip(ahead, behind, distance, strict=True)
+    ]
+    return np.stack(columns, axis=1)
+
+
+def sharp(residual: Residual, point: Signal, bounds: Bounds) -> Signal:
+    """Derivative of `residual`, each column with the step that sees the least bend around `point`.
+
+    A shaft that only just breaks loose bends the residual, and fits like to end on such a bend. Columns
+    taken across it do not add up: an exact tie of parameters would look as if the recording broke it.
+    """
+    value = residual(point)
+    slopes, bend = _bend(residual, point, value, bounds, FINE)
+    if np.any(bend > SMOOTH):
+        closer, less = _bend(residual, point, value, bounds, FINEST)
+        slopes = np.where(less < bend, closer, slopes)
+    noise = float(np.linalg.norm(value)) / np.sqrt(value.size)
+    for index in np.flatnonzero(np.linalg.norm(slopes, axis=0) * WEAK < noise).tolist():
+        slopes[:, index] = _across_jumps(residual, point, bounds, index, slopes[:, index], noise)
+    return slopes
+
+
+def _across_jumps(
+    residual: Residual, point: Signal, bounds: Bounds, index: int, column: Signal, noise: float
+) -> Signal:
+    """The column of a quantity that acts in jumps, as when the shaft breaks loose a sample later.
+
+    Taken with the finest step that sees jumps, its length held down so that the deviation is no less.
+    """
+    for step in JUMPS:
+        offset = step * np.eye(point.size)[index]
+        high, low = np.minimum(point + offset, bounds[1]), np.maximum(point - offset, bounds[0])
+        jumps = (residual(high) - residual(low)) / max(float((high - low)[index]), 1e-300)
+        length = float(np.linalg.norm(jumps))
+        if length * step > noise:
+            return np.asarray(jumps * noise / (length * step))
+    return column
+
+
+def _bend(
+    residual: Residual, point: Signal, middle: Signal, bounds: Bounds, step: float
+) -> tuple[Signal, Signal]:
+    """The slopes at `point` and, for each column, how far those ahead and behind are apart."""
+    ahead, behind = (
+        np.clip(point + sign * step * np.eye(point.size), *bounds) for sign in (1.0, -1.0)
+    )
+    after, before = (np.stack([residual(there) for there in side], axis=1) for side in (ahead, behind))
+    width = np.maximum(np.diagonal(ahead - behind), 1e-300)
+    forward = np.maximum(np.diagonal(ahead) - point, 1e-300)
+    slopes, one_sided = (after - before) / width, (after - middle[:, None]) / forward
+    length = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    return slopes, np.linalg.norm(one_sided - slopes, axis=0) / length
