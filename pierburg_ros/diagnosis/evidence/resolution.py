@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import DECLARED, STEP
 
 Signal = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def coarse_step(measured: Sequence[Signal], noise: float) -> float:
     """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0."""
     step = min(_grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
-    plausible = EFFECT["sensor_quantization"].parameter("step").plausible[0]
+    plausible = DECLARED[STEP].plausible[0]
     return step if step >= plausible and step > COARSE * unrounded else 0.0
 
 

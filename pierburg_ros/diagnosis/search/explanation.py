@@ -9,25 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import DECLARED
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
 
 DRIFT = math.log(6.0)
 """A base parameter may drift by up to this factor (logarithm) either way."""
-ABOVE = {"static_friction.breakaway_torque": "coulomb_friction"}
+ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
 """Parameters that a search moves by what they exceed another one."""
-TEETH = "cogging_torque.periods_per_motor_revolution"
-RHYTHMS = (TEETH, "external_load.frequency")
+RHYTHMS = tuple(name for name, p in DECLARED.items() if p.rhythm)
 """Parameters that are known as finely as the recording is long, and move in small steps."""
-LEAST = {TEETH: 0.9, "external_load.frequency": 0.02, "nonlinear_spring.knee_angle": 0.1}
-"""Lowest values that are looked for: a slower rhythm is a constant torque, an earlier knee a stiffer spring."""
-LOGARITHMIC = {
-    "presliding.stiffness", "presliding.damping", "gear_compliance.stiffness", "gear_compliance.damping",
-    "stop_compliance.stiffness", "stop_compliance.damping", "thermal_resistance.thermal_resistance",
-    "thermal_resistance.heat_capacity", "position_dependent_friction.width", "static_friction.stribeck_velocity",
-}  # fmt: skip
+LEAST = {name: p.least for name, p in DECLARED.items() if p.least is not None}
+"""Lowest values that are looked for."""
+LOGARITHMIC = frozenset(name for name, p in DECLARED.items() if p.logarithmic)
 """Parameters that are searched by their logarithm."""
 
 
@@ -167,8 +162,7 @@ class Coordinates:
         return np.array([_step(name) for name in self.names])
 
     def _declared(self, name: str) -> tuple[float, float, float, float, float]:
-        effect, own = name.split(".")
-        p = EFFECT[effect].parameter(own)
+        p = DECLARED[name]
         scale = max(abs(p.plausible[0]), abs(p.plausible[1]))
         return p.minimum, p.maximum, p.plausible[0], p.plausible[1], scale
 

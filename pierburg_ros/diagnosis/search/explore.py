@@ -10,7 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, after_choice
-from pierburg_ros.diagnosis.search.candidates import Start, drifting, is_rough
+from pierburg_ros.diagnosis.search.candidates import drifting, is_rough
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant, canonical, quantities, without
 from pierburg_ros.diagnosis.search.fits import Fit, Search
 from pierburg_ros.diagnosis.search.refinement import polished
@@ -27,6 +27,7 @@ from pierburg_ros.diagnosis.search.selection import (
     tied,
 )
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 
@@ -147,12 +148,12 @@ class Exploration:
         """Fit an explanation that stands for an effect of `rival` by other means, if it keeps up as the effect fades.
 
         In one step the others would have to take over all of it at once, and events would jump; so would they if its
-        other effects gave way meanwhile. A load that pushes all the time is a change of preload, and needs no search.
+        other effects gave way meanwhile. What acts all the time like a change of a base parameter needs no search.
         """
         values = rival.values
-        if faded.effect == "external_load" and "spring_preload" in explanation.drifted:
-            preload = values["spring_preload"] + values["external_load.torque"]
-            self.add(explanation, {**values, "spring_preload": preload})
+        part, base = EFFECT[faded.effect].constant_part or ("", "")
+        if base in explanation.drifted:
+            self.add(explanation, {**values, base: values[base] + values[f"{faded.effect}.{part}"]})
         held = tuple(_faded(variant, rival, 1.0) for variant in explanation.variants)
         for share in FADING:
             fading = (*held, _faded(faded, rival, share)) if share > 0.0 else held

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Switch
 from pierburg_ros.diagnosis.evidence.resolution import counted
 from pierburg_ros.diagnosis.search.explanation import AFTER, WHEN, Coordinates, Explanation, Variant
+from pierburg_ros.effects import DECLARED, EFFECT
+from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.least_squares import Solution, minimise
 from pierburg_ros.plant import Model
@@ -18,14 +20,11 @@ from pierburg_ros.plant import Model
 Signal = NDArray[np.float64]
 Start = Mapping[str, float]
 
-STRIDES = {
-    "pwm_deadband.width": 5.0, "supply_sag.source_resistance": 5.0, "cogging_torque.amplitude": 5.0,
-    "external_load.torque": 5.0, "external_load.amplitude": 5.0, "viscous_friction.coefficient": 5.0,
-    "load_dependent_friction.coefficient": 5.0, "sensor_hysteresis.width": 5.0, "sensor_lag.time_constant": 5.0,
-    "sensor_nonlinearity.amplitude": 5.0, "input_delay.delay": 2.0, "backlash.gap": 2.0,
-}  # fmt: skip
+STRIDES = {name: p.stride for name, p in DECLARED.items() if p.stride is not None}
 """Strengths that a linear step scales, and the largest factor: events jump with delays and gaps, and what is right for
 a small one says little about a large one. Their starts lie close enough."""
+BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
+"""Parameters that stay below another one."""
 REDATED = 4.0
 """How far around its first estimate the moment of a change is looked for again [s]."""
 
@@ -159,10 +158,10 @@ class Search:
     def model(self, values: Mapping[str, float]) -> Model:
         """The nominal model with `values`, pairs that must keep an order put in order."""
         changed = dict(values)
-        resistance = changed.get("armature_resistance", self.nominal.values["armature_resistance"])
-        source = changed.get("supply_sag.source_resistance", 0.0)
-        if source >= resistance:
-            changed["supply_sag.source_resistance"] = 0.98 * resistance
+        for name in changed.keys() & BELOW.keys():
+            limit = changed.get(BELOW[name], self.nominal.values[BELOW[name]])
+            if changed[name] >= limit:
+                changed[name] = HIGHEST_SHARE * limit
         return self.nominal.with_values(changed)
 
     def screened(self, base: Fit, variant: Variant, starts: Sequence[Start]) -> list[tuple[float, dict[str, float]]]:
@@ -212,10 +211,12 @@ class Search:
     def _added(self, base: Fit, variant: Variant, own: dict[str, float]) -> tuple[Model, Switch | None]:
         """The models of `base` with an effect added."""
         added = {**own, **dict(_dotted(variant))}
-        model = base.model.with_values(_stacked(base.model, added))
+        model = base.model.with_values(EFFECT[variant.effect].counted(added, base.model.values))
         if base.switch is None:
             return model, None
-        return model, Switch(base.switch.model.with_values(_stacked(base.switch.model, added)), base.switch.time)
+        after = base.switch.model
+        added = EFFECT[variant.effect].counted(added, after.values)
+        return model, Switch(after.with_values(added), base.switch.time)
 
     def dated(self, fit: Fit) -> Fit:
         """A fit with a change, its moment looked for again among those around it: the cost has many dips there."""
@@ -271,14 +272,6 @@ def _dotted(variant: Variant) -> dict[str, float]:
     return {f"{variant.effect}.{name}": value for name, value in variant.fixed}
 
 
-def _stacked(model: Model, own: dict[str, float]) -> dict[str, float]:
-    """`own` values with a breakaway torque counted from the sliding friction of `model`."""
-    if "static_friction.breakaway_torque" in own:
-        own = dict(own)
-        own["static_friction.breakaway_torque"] += model.values["coulomb_friction"]
-    return own
-
-
 def _in_quadrature(starts: Sequence[Start]) -> list[list[Start]]:
     groups: dict[tuple[tuple[str, float], ...], list[Start]] = {}
     for start in starts:
@@ -289,7 +282,7 @@ def _in_quadrature(starts: Sequence[Start]) -> list[list[Start]]:
 
 def _scaled(model: Model, variant: Variant, used: list[dict[str, float]], scale: Signal) -> dict[str, float]:
     """The start with the strength, and with two starts in quadrature the phase, that the linear step asks for."""
-    values = {**model.values, **_stacked(model, used[0])}
+    values = {**model.values, **EFFECT[variant.effect].counted(used[0], model.values)}
     if len(used) == 2:
         name = f"{variant.effect}.amplitude"
         values[name] = used[0][name] * float(np.hypot(*scale))

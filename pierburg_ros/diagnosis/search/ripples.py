@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.evidence.missing_torque import MissingTorque, missing_torque
 from pierburg_ros.diagnosis.evidence.stretches import REMEMBERED, restarted
-from pierburg_ros.diagnosis.search.candidates import COGGING, PULSATION, Start, pulses, turns
-from pierburg_ros.diagnosis.search.explanation import TEETH, Explanation, Variant
+from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search.fits import Fit, Search
-from pierburg_ros.plant import Model
+from pierburg_ros.effects import EFFECTS, Effect
+from pierburg_ros.effects.effect import Ripple as Declared
+from pierburg_ros.effects.effect import Start
 
 LENGTHS = (0.5, 1.0, 2.0, 4.0)
 """Lengths of the stretches [s] that are fitted in turn, before whole recordings."""
@@ -37,8 +38,15 @@ class Ripple:
     """
 
     variant: Variant
-    rhythms: Callable[[MissingTorque, Model], list[float]]
+    rhythms: Callable[[MissingTorque], Sequence[float]]
     held: str | None = None
+
+    @staticmethod
+    def of(effect: Effect, declared: Declared) -> Ripple:
+        """The ripple that an effect declares."""
+        free = (declared.amplitude, declared.rhythm, declared.phase)
+        held = f"{effect.id}.{declared.rhythm}" if declared.whole else None
+        return Ripple(Variant(effect.id, free), declared.rhythms, held)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -46,12 +54,8 @@ class Ripple:
         return tuple(f"{self.variant.effect}.{name}" for name in self.variant.free)
 
 
-def _whole_turns(missing: MissingTorque, model: Model) -> list[float]:
-    return [max(1.0, float(round(rhythm))) for rhythm in turns(missing, model)]
-
-
-RIPPLES = (Ripple(COGGING, _whole_turns, TEETH), Ripple(PULSATION, lambda missing, _: pulses(missing)))
-"""Cogging over the angle, with a whole number of teeth, and a load that pulsates in time."""
+RIPPLES = tuple(Ripple.of(effect, effect.ripple) for effect in EFFECTS if effect.ripple is not None)
+"""Those that effects declare, over the angle with a whole number of periods a turn, or in time."""
 
 
 def through_stretches(search: Search, ripple: Ripple, bases: Mapping[Explanation, Fit], pool: Executor) -> list[Fit]:
@@ -93,7 +97,7 @@ def _scanned(
 ) -> Start:
     """The ripple that leaves least over the shortest stretches on top of `base`."""
     missing = missing_torque(search.data, search.data.runs[0], base.model)
-    rhythms = dict.fromkeys(ripple.rhythms(missing, base.model))
+    rhythms = dict.fromkeys(ripple.rhythms(missing))
     starts = [dict(zip(ripple.names, row, strict=True)) for row in itertools.product(AMPLITUDES, rhythms, PHASES)]
     costs = pool.map(lambda start: short.chi2_at(explanation, {**base.values, **start}), starts)
     return min(zip(costs, starts, strict=True), key=lambda pair: pair[0])[1]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.diagnosis.search.candidates import ROUGH, TIMED, Start, starts_of
+from pierburg_ros.diagnosis.search.candidates import ROUGH, TIMED, starts_of
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant, canonical
 from pierburg_ros.diagnosis.search.fits import Fit, Search
 from pierburg_ros.diagnosis.search.selection import adequate
+from pierburg_ros.effects.effect import Start
 
-Growth = str | tuple[Variant, list[Start]]
+Growth = str | tuple[Variant, Sequence[Start]]
 """What an explanation grows by: a parameter (drifted or changed), or an effect with its starting values."""
 
 LATE = 0.5
@@ -123,7 +124,7 @@ class Outlook:
         return Prospect(explanation, name, search, base, (base.values,), _error(search.stepped(probe), base))
 
     def _acting(
-        self, explanation: Explanation, growth: tuple[Variant, list[Start]], search: Search, base: Fit
+        self, explanation: Explanation, growth: tuple[Variant, Sequence[Start]], search: Search, base: Fit
     ) -> Prospect:
         """One more effect on top of `base`, from the starts that promise most, if any does."""
         promised = search.screened(base, *growth)[:STARTS_TRIED]
