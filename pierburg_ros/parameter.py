@@ -59,7 +59,7 @@ class Parameter:
             raise InputError(f"{label} is {_shown(value)}; expected {self.allowed}.")
         if isinstance(value, (int, float)) and not isinstance(value, bool) and not self.holds(value):
             raise InputError(f"{label} is {value:g}; expected {self.allowed}.")
-        return value  # type: ignore[return-value]
+        return value
 
     def holds(self, value: float) -> bool:
         """Whether a number is finite and in the range."""

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal
 
+from pierburg_ros.parameter import Parameter
+
 Load = Literal["spring", "pendulum"]
 Quantity = Literal["hall_voltage", "position"]
 Unit = Literal["V", "rad"]
@@ -27,17 +29,17 @@ UNITS = {
 
 
 @dataclass(frozen=True)
-class NominalParameter:
-    """A base parameter: nominal value, accepted range, where the value comes from, and whether fits may change it."""
+class NominalParameter(Parameter):
+    """A base parameter; its default is the nominal value."""
 
-    name: str
-    unit: str
-    nominal: float
-    minimum: float
-    maximum: float
-    origin: str
-    meaning: str
-    free: bool
+    free: bool = True
+    """Whether a fit may change it."""
+
+    @property
+    def nominal(self) -> float:
+        """The nominal value, in the unit."""
+        assert isinstance(self.default, float)
+        return self.default
 
 
 @dataclass(frozen=True)

@@ -116,11 +116,15 @@ def _first_problem(error: ValidationError) -> str:
     return f"{place}: {message}" if place else message
 
 
+def _parameter(name: str, given: _Parameter) -> NominalParameter:
+    unit, meaning = UNITS[name]
+    return NominalParameter(
+        name, given.nominal, meaning, unit, given.minimum, given.maximum, origin=given.origin, free=given.free
+    )
+
+
 def _actuator(description: _Description) -> Actuator:
-    parameters = {
-        name: NominalParameter(name, UNITS[name][0], p.nominal, p.minimum, p.maximum, p.origin, UNITS[name][1], p.free)
-        for name, p in description.parameters.items()
-    }
+    parameters = {name: _parameter(name, p) for name, p in description.parameters.items()}
     stops = description.stops
     return Actuator(
         description.name,

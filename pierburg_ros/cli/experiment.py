@@ -122,7 +122,7 @@ def designed(
     limit: float,
 ) -> Sequence:
     """The sequence that best separates the explanations `names`, explained in words and a picture."""
-    first, second = (explanation(name, base, duration) for name in names)
+    first, second = (explanation(name, base) for name in names)
     with Console(stderr=True).status("designing the sequence") as status:
         design = design_sequence(first, second, duration, rate, noise or 1e-6, limit, status.update)
     labels = (Path(names[0]).stem, Path(names[1]).stem)

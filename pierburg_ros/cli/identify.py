@@ -28,7 +28,7 @@ from pierburg_ros.identification.table import (
     parameter_table,
     reasons,
 )
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import Model, read_model
 from pierburg_ros.recording import Recording, read_recording
 
 
@@ -76,7 +76,7 @@ def starting_model(model: Path | None, actuator: str | None) -> Model:
     """The model file given, or the nominal actuator; the Pierburg valve where neither is named."""
     described = read_actuator(actuator) if actuator is not None else None
     if model is not None:
-        return Model.read(model, described)
+        return read_model(model, described)
     return Model.nominal(described or read_actuator("pierburg"))
 
 

@@ -9,7 +9,7 @@ import typer
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import Model, read_model
 
 ModelOption = Annotated[Path | None, typer.Option("--model", help="Model file to simulate with.")]
 ActuatorOption = Annotated[
@@ -21,7 +21,7 @@ def chosen_model(model: Path | None, actuator: str | None) -> Model:
     """The model of the file `model`, or the nominal one of `actuator`."""
     described = read_actuator(actuator) if actuator is not None else None
     if model is not None:
-        return Model.read(model, described)
+        return read_model(model, described)
     if described is None:
         raise InputError("Found neither --model nor --actuator, expected one. Add --actuator pierburg.")
     return Model.nominal(described)

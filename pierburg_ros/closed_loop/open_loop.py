@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.effects import STEP
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.torques.sensor import quantised
@@ -22,7 +23,7 @@ def simulate_measurement(
 
     Gaussian noise of RMS `noise` in the measured unit is added before the converter, if there is one.
     """
-    analog = model.with_values({"sensor_quantization.step": 0.0})
+    analog = model.with_values({STEP: 0.0})
     measured = simulate(analog, inputs, sample_times, initial_angle)
     measured += noise * np.random.default_rng(seed).standard_normal(measured.size)
     if not np.all(np.isfinite(measured)):

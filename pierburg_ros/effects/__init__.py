@@ -51,5 +51,12 @@ EFFECTS: tuple[Effect, ...] = (
     sensor_quantization.EFFECT,
 )
 EFFECT: dict[str, Effect] = {effect.id: effect for effect in EFFECTS}
+"""By id."""
+DECLARED: dict[str, Parameter] = {f"{effect.id}.{p.name}": p for effect in EFFECTS for p in effect.parameters}
+"""Every parameter by dotted name."""
+ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not None)
+"""The effect of a converter."""
+STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
+"""Dotted name of its step."""
 
-__all__ = ["EFFECT", "EFFECTS", "Effect", "Parameter"]
+__all__ = ["DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]

@@ -1,6 +1,6 @@
 """Free play between motor and shaft."""
 
-from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.effect import MOTORS, Effect, Parameter, Variant, grid
 
 EFFECT = Effect(
     id="backlash",
@@ -8,20 +8,28 @@ EFFECT = Effect(
     sentence="The gear teeth have play: after the motor has backed away it turns a little before the shaft follows.",
     equation="total free play gap between motor and shaft, opening flank touching at the start, "
     "friction split between the two sides by motor_friction_share, inertia on the motor side",
-    origin="Nordin, Gutman, Automatica 38 (2002) 1633-1649",
+    source="Nordin, Gutman, Controlling mechanical systems with backlash - a survey (2002)",
     shows_in="leaving the closed stop after negative duty",
     record="duty below 0 at the closed stop, then open, several times",
     parameters=(
-        Parameter("gap", "rad", 0.0, 0.5, (0.01, 0.12), "total free play at the shaft"),
+        Parameter("gap", None, "total free play at the shaft", "rad", 0.0, 0.5, plausible=(0.01, 0.12), stride=2.0),
         Parameter(
             "motor_friction_share",
+            0.0,
+            "share of the friction on the motor side",
             "1",
             0.0,
             1.0,
-            (0.05, 0.5),
-            "share of the friction on the motor side",
-            default=0.0,
+            plausible=(0.05, 0.5),
         ),
     ),
     strength=("gap",),
+    typical={"gap": 0.015, "motor_friction_share": 0.2},
+    variants=(
+        Variant(("gap", "motor_friction_share"), grid(gap=(0.015, 0.04, 0.08), motor_friction_share=(0.1, 0.4))),
+    ),
+    memory="brief",
+    linear=True,
+    jumps=True,
+    drives=MOTORS,
 )

@@ -1,31 +1,71 @@
 """Cogging: the rotor prefers certain angles."""
 
 import math
+from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.effect import MOTORS, QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
 from pierburg_ros.kernel import kernel
+
+TURNS = (0.9, 16.0)
+"""Range in which periods per motor revolution are looked for: the pole pairs and slots of small motors."""
+COMMON = (2.0, 3.0, 6.0)
+"""Periods per motor revolution of common small motors: looked at whatever the recording shows."""
+
+
+def _turns(missing: Missing) -> Sequence[float]:
+    """The strongest rhythms of the missing torque [periods per motor revolution]."""
+    return missing.turns(TURNS, 4)
+
+
+def _whole_turns(missing: Missing) -> Sequence[float]:
+    """The same as whole numbers: a motor has a whole number of teeth."""
+    return [max(1.0, float(round(rhythm))) for rhythm in _turns(missing)]
+
+
+def _starts(missing: Missing) -> Sequence[Start]:
+    return [
+        {"amplitude": 0.02, "periods_per_motor_revolution": periods, "phase": phase}
+        for periods in dict.fromkeys((*_turns(missing), *COMMON))
+        for phase in QUADRATURE
+    ]
+
+
+def _quarter_turn(values: Mapping[str, float]) -> float:
+    """Travel [rad] over which the ripple turns once, a third of its period."""
+    ripple = values["cogging_torque.periods_per_motor_revolution"] * values["gear_ratio"]
+    return 2.0 / ripple if ripple > 0.0 else math.inf
+
 
 EFFECT = Effect(
     id="cogging_torque",
     stage="load",
     sentence="The motor snaps from pole to pole; the torque ripples along the travel.",
     equation="load torque amplitude sin(periods_per_motor_revolution gear_ratio angle + phase)",
-    origin="Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. (2003), chapter 5",
+    source="Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. (2003)",
     shows_in="a ripple along the angle, at low velocity",
     record="very slow ramps over the whole travel",
     parameters=(
-        Parameter("amplitude", "N.m", 0.0, 2.0, (0.01, 0.06), "amplitude at the shaft"),
+        Parameter("amplitude", None, "amplitude at the shaft", "N.m", 0.0, 2.0, plausible=(0.01, 0.06), stride=5.0),
         Parameter(
             "periods_per_motor_revolution",
+            None,
+            "ripple periods in one turn of the motor",
             "1",
             0.0,
             64.0,
-            (1.0, 12.0),
-            "ripple periods in one turn of the motor",
+            plausible=(1.0, 12.0),
+            # a slower rhythm is a constant torque
+            least=0.9,
+            rhythm=True,
         ),
-        Parameter("phase", "rad", -6.3, 6.3, (-3.15, 3.15), "phase at angle 0", default=0.0),
+        Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15)),
     ),
     strength=("amplitude",),
+    typical={"amplitude": 0.03, "periods_per_motor_revolution": 6.0},
+    variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts),),
+    ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
+    drives=MOTORS,
+    turns_within=_quarter_turn,
 )
 
 

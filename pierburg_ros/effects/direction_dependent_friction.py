@@ -1,6 +1,6 @@
 """Friction that differs between opening and closing."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,30 +8,40 @@ EFFECT = Effect(
     stage="friction",
     sentence="It runs easier one way than the other.",
     equation="viscous coefficient + viscous_difference and friction level + coulomb_difference when closing",
-    origin=ARMSTRONG,
+    source=ARMSTRONG,
     shows_in="closing movements",
     record="slow and fast travel in both directions",
     parameters=(
         Parameter(
             "viscous_difference",
+            0.0,
+            "additional damping when closing",
             "N.m.s/rad",
             -1.0,
             1.0,
-            (0.01, 0.15),
-            "additional damping when closing",
-            default=0.0,
+            plausible=(0.01, 0.15),
         ),
         Parameter(
             "coulomb_difference",
+            0.0,
+            "additional friction level when closing",
             "N.m",
             -1.0,
             1.0,
-            (0.01, 0.1),
-            "additional friction level when closing",
-            default=0.0,
+            plausible=(0.01, 0.1),
         ),
     ),
     strength=("viscous_difference", "coulomb_difference"),
+    typical={"viscous_difference": 0.03, "coulomb_difference": 0.03},
+    variants=(
+        Variant(("viscous_difference",), grid(viscous_difference=(-0.03, 0.05))),
+        Variant(("coulomb_difference",), grid(coulomb_difference=(-0.03, 0.03))),
+        Variant(
+            ("viscous_difference", "coulomb_difference"),
+            grid(viscous_difference=(-0.03, 0.05), coulomb_difference=(-0.03, 0.03)),
+        ),
+    ),
+    linear=True,
 )
 
 

@@ -19,8 +19,19 @@ Start = Mapping[str, float]
 DRIVES: tuple[Drive, ...] = ("voltage", "current", "torque")
 LOADS: tuple[Load, ...] = ("spring", "pendulum", "none")
 SENSORS: tuple[Sensor, ...] = ("hall_voltage", "position", "speed")
+MOTORS: tuple[Drive, ...] = ("voltage", "current")
+"""Drives whose torque comes from a motor with a gear."""
 QUADRATURE = (0.0, math.pi / 2)
 """Phases from which a search with a free phase starts: a linear step finds any other between them."""
+HIGHEST_SHARE = 0.98
+"""Share of its limit up to which a search moves a parameter that has to stay `below` another: what is left is room for
+the differences of a Jacobian, a thousandth of a range, on either side."""
+
+PAPER = "equation (5) of the paper"
+ARMSTRONG = (
+    "Armstrong-Helouvry, Dupont, Canudas de Wit, A survey of models, analysis tools and compensation methods for the "
+    "control of machines with friction (1994)"
+)
 
 
 class Missing(Protocol):
@@ -57,6 +68,8 @@ class Parameter(parameter.Parameter):
     """Largest factor by which one linear step may scale it; None: a step does not scale it."""
     rhythm: bool = False
     """A frequency: known as finely as the recording is long, and moved in small steps."""
+    dated: bool = False
+    """Whether it tells when something happened in one recording, and not what the actuator is."""
 
 
 @dataclass(frozen=True)
@@ -103,21 +116,24 @@ class Effect:
     strength: tuple[str, ...]
     """Parameters that make it absent where all of them are 0."""
     typical: Mapping[str, float]
-    """Values as one meets them; what is left out is 0."""
+    """Values as one meets them in an actuator still in service: guesses towards the lower end of what is plausible.
+
+    What is left out is 0; what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the
+    0.3 degree asked of a controller at standstill, which has nothing but this sensor and cannot correct them.
+    """
     variants: tuple[Variant, ...] = ()
     """In which ways a search looks for it; none: it is not searched for."""
     ripple: Ripple | None = None
     state: tuple[str, ...] = ()
     """Numbers that the plant's state keeps for it, `s.<id>.<name>` in the kernels, all 0 at the start."""
     memory: Memory = "none"
-    """Whether it remembers what was: not at all, for less than a second, or for longer than any stretch."""
+    """Whether it remembers what was: not at all, briefly, so that a stretch of a recording may start afresh, or for
+    longer than any stretch."""
     linear: bool = False
     """Whether torques stay straight lines of angle and velocity between events: the simulator then takes no
     shorter steps for it."""
     jumps: bool = False
     """Whether events jump as its values change, so that the cost of a fit has many local minima."""
-    dated: bool = False
-    """Whether it acts at a time of one recording, and is not a property of the actuator."""
     drives: tuple[Drive, ...] = DRIVES
     loads: tuple[Load, ...] = LOADS
     sensors: tuple[Sensor, ...] = SENSORS
@@ -132,13 +148,28 @@ class Effect:
     """The parameter that is the step of a converter, seen in the samples and not searched for."""
 
     def parameter(self, name: str) -> Parameter:
-        """The declaration of the parameter called `name`; KeyError where there is none."""
+        """The declaration of the parameter called `name`, without the id; KeyError where there is none."""
         return {p.name: p for p in self.parameters}[name]
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in the order of the declaration."""
         return tuple(p.name for p in self.parameters)
+
+    @property
+    def dated(self) -> bool:
+        """Whether it acts at a time of one recording, and is not a property of the actuator."""
+        return any(p.dated for p in self.parameters)
+
+    def typical_values(self, base: Mapping[str, float]) -> dict[str, float]:
+        """The typical values by dotted name, for a model with the values `base`."""
+        values = {f"{self.id}.{name}": self.typical.get(name, 0.0) for name in self.names}
+        return self.counted(values, base)
+
+    def counted(self, values: Mapping[str, float], base: Mapping[str, float]) -> dict[str, float]:
+        """`values` by dotted name with what is counted from a base parameter added to its value in `base`."""
+        above = {f"{self.id}.{p.name}": p.above for p in self.parameters if p.above is not None}
+        return {name: value + (base[above[name]] if name in above else 0.0) for name, value in values.items()}
 
     def acts(self, values: Mapping[str, float]) -> bool:
         """Whether it acts in a model with these `values`, by dotted name."""

@@ -1,59 +1,96 @@
 """A load torque from outside: constant, pulsating, or for a while."""
 
 import math
+from collections.abc import Sequence
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
 from pierburg_ros.kernel import kernel
+
+FREQUENCIES = (0.1, 20.0)
+"""Range in which the rhythm of a load is looked for [Hz]: slower ones take longer than a recording, and the shaft
+hardly follows faster ones."""
+
+
+def _pulses(missing: Missing) -> Sequence[float]:
+    """The strongest rhythms of the missing torque in time [Hz]."""
+    return missing.pulses(FREQUENCIES, 5)
+
+
+def _pulsating(missing: Missing) -> Sequence[Start]:
+    return [
+        {"amplitude": 0.02, "frequency": frequency, "phase": phase}
+        for frequency in _pulses(missing)
+        for phase in QUADRATURE
+    ]
+
+
+def _for_a_while(missing: Missing) -> Sequence[Start]:
+    return [{"torque": load, "start": start, "end": end} for start, end, load in missing.spans(4)]
+
 
 EFFECT = Effect(
     id="external_load",
     stage="load",
     sentence="Something pushes on the valve from outside, steadily or in pulses.",
     equation="load torque torque + amplitude sin(2 pi frequency t + phase) for start <= t < end",
-    origin=CONTRACT,
+    source="Wittenburg, Dynamics of Multibody Systems, 2nd ed. (2008)",
     shows_in="a span of time, or a rhythm in time",
     record="standstills long enough to see several pulses",
     parameters=(
-        Parameter("torque", "N.m", -5.0, 5.0, (-0.1, 0.1), "constant part, positive closes", default=0.0),
+        Parameter("torque", 0.0, "constant part, positive closes", "N.m", -5.0, 5.0, plausible=(-0.1, 0.1), stride=5.0),
         Parameter(
             "amplitude",
+            0.0,
+            "amplitude of the pulsating part",
             "N.m",
             0.0,
             5.0,
-            (0.01, 0.1),
-            "amplitude of the pulsating part",
-            default=0.0,
+            plausible=(0.01, 0.1),
+            stride=5.0,
         ),
         Parameter(
             "frequency",
+            0.0,
+            "frequency of the pulsating part",
             "Hz",
             0.0,
             200.0,
-            (0.2, 20.0),
-            "frequency of the pulsating part",
-            default=0.0,
+            plausible=(0.2, 20.0),
+            # a slower rhythm is a constant torque
+            least=0.02,
+            rhythm=True,
         ),
-        Parameter("phase", "rad", -6.3, 6.3, (-3.15, 3.15), "phase at the first sample", default=0.0),
+        Parameter("phase", 0.0, "phase at the first sample", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), dated=True),
         Parameter(
             "start",
+            0.0,
+            "first moment of the load, from the first sample",
             "s",
             0.0,
             1000000000.0,
-            (0.0, 60.0),
-            "first moment of the load, from the first sample",
-            default=0.0,
+            plausible=(0.0, 60.0),
+            dated=True,
         ),
         Parameter(
             "end",
+            0.0,
+            "end of the load, from the first sample; 0: never",
             "s",
             0.0,
             1000000000.0,
-            (0.0, 60.0),
-            "end of the load, from the first sample; 0: never",
-            default=0.0,
+            plausible=(0.0, 60.0),
+            dated=True,
         ),
     ),
     strength=("torque", "amplitude"),
+    typical={"torque": 0.05, "amplitude": 0.03, "frequency": 2.0},
+    variants=(
+        Variant(("amplitude", "frequency", "phase"), _pulsating),
+        Variant(("torque", "start", "end"), _for_a_while),
+    ),
+    ripple=Ripple("amplitude", "frequency", "phase", _pulses),
+    jumps=True,
+    constant_part=("torque", "spring_preload"),
 )
 
 

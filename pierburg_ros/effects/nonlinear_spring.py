@@ -1,6 +1,6 @@
 """A return spring that gets stiffer with its travel."""
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,31 +8,39 @@ EFFECT = Effect(
     stage="load",
     sentence="The spring pulls harder towards the end than its rate says.",
     equation="spring torque + cubic_stiffness angle^3, + knee_stiffness (angle - knee_angle) beyond the knee",
-    origin=CONTRACT,
+    source="Nayfeh, Mook, Nonlinear Oscillations (1979)",
     shows_in="large angles",
     record="standstills and slow ramps at small and large angles",
     parameters=(
-        Parameter("cubic_stiffness", "N.m/rad^3", 0.0, 5.0, (0.01, 0.15), "cubic stiffness", default=0.0),
+        Parameter("cubic_stiffness", 0.0, "cubic stiffness", "N.m/rad^3", 0.0, 5.0, plausible=(0.01, 0.15)),
         Parameter(
             "knee_stiffness",
+            0.0,
+            "additional stiffness beyond the knee",
             "N.m/rad",
             0.0,
             50.0,
-            (0.02, 0.3),
-            "additional stiffness beyond the knee",
-            default=0.0,
+            plausible=(0.02, 0.3),
         ),
         Parameter(
             "knee_angle",
+            0.0,
+            "angle at which the additional stiffness starts",
             "rad",
             -6.3,
             6.3,
-            (0.3, 1.3),
-            "angle at which the additional stiffness starts",
-            default=0.0,
+            plausible=(0.3, 1.3),
+            # an earlier knee is a stiffer spring
+            least=0.1,
         ),
     ),
     strength=("cubic_stiffness", "knee_stiffness"),
+    typical={"cubic_stiffness": 0.05},
+    variants=(
+        Variant(("cubic_stiffness",), grid(cubic_stiffness=(0.03,))),
+        Variant(("knee_stiffness", "knee_angle"), grid(knee_stiffness=(0.1,), knee_angle=(0.3, 0.6, 0.9, 1.2))),
+    ),
+    loads=("spring",),
 )
 
 

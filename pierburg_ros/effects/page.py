@@ -42,7 +42,7 @@ def _section(effect: Effect) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     for parameter in effect.parameters:
         yield _row(effect, parameter)
-    yield f"\nShows in: {effect.shows_in}. To see it, record: {effect.record}. Source: {effect.origin}.\n"
+    yield f"\nShows in: {effect.shows_in}. To see it, record: {effect.record}. Source: {effect.source}.\n"
 
 
 def _row(effect: Effect, parameter: Parameter) -> str:

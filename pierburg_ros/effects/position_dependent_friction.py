@@ -1,24 +1,52 @@
 """A place on the travel where it rubs more."""
 
 import math
+from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Missing, Parameter, Start, Variant
 from pierburg_ros.kernel import kernel
+
+
+def _starts(missing: Missing) -> Sequence[Start]:
+    return [
+        {"amplitude": 0.04, "center": center, "width": width}
+        for center in missing.tight_spots(4)
+        for width in (0.06, 0.2)
+    ]
+
+
+def _width(values: Mapping[str, float]) -> float:
+    """Travel [rad] within which the friction turns no more than once."""
+    return values["position_dependent_friction.width"]
+
 
 EFFECT = Effect(
     id="position_dependent_friction",
     stage="friction",
     sentence="There is a tight spot on the way.",
     equation="friction level + amplitude exp(-((angle - center)/width)^2)",
-    origin=ARMSTRONG,
+    source=ARMSTRONG,
     shows_in="a band of angle, both directions",
     record="slow ramps over the whole travel in both directions",
     parameters=(
-        Parameter("amplitude", "N.m", 0.0, 5.0, (0.02, 0.12), "additional friction at the tight spot"),
-        Parameter("center", "rad", -6.3, 6.3, (0.1, 1.5), "angle of the tight spot"),
-        Parameter("width", "rad", 0.005, 3.0, (0.04, 0.3), "half width of the tight spot, to 1/e"),
+        Parameter("amplitude", None, "additional friction at the tight spot", "N.m", 0.0, 5.0, plausible=(0.02, 0.12)),
+        Parameter("center", None, "angle of the tight spot", "rad", -6.3, 6.3, plausible=(0.1, 1.5)),
+        Parameter(
+            "width",
+            None,
+            "half width of the tight spot, to 1/e",
+            "rad",
+            0.005,
+            3.0,
+            plausible=(0.04, 0.3),
+            logarithmic=True,
+        ),
     ),
     strength=("amplitude",),
+    typical={"amplitude": 0.06, "center": 0.8, "width": 0.15},
+    variants=(Variant(("amplitude", "center", "width"), _starts),),
+    jumps=True,
+    turns_within=_width,
 )
 
 

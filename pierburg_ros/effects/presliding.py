@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import LUGRE, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -10,14 +10,28 @@ EFFECT = Effect(
     stage="friction",
     sentence="Before it slides it gives a little, like standing on a brush.",
     equation="bristle z: friction = stiffness z + damping dz/dt, dz/dt = w - abs(w) z stiffness / (friction level)",
-    origin=LUGRE,
+    source="Canudas de Wit, Olsson, Astrom, Lischinsky, A new model for control of systems with friction (1995)",
     shows_in="the first milliradians after each reversal",
     record="small reversals about several angles",
     parameters=(
-        Parameter("stiffness", "N.m/rad", 0.0, 100000.0, (4.0, 60.0), "bristle stiffness; 0: rigid"),
-        Parameter("damping", "N.m.s/rad", 0.0, 5.0, (0.001, 0.1), "bristle damping", default=0.0),
+        Parameter(
+            "stiffness",
+            None,
+            "bristle stiffness; 0: rigid",
+            "N.m/rad",
+            0.0,
+            100000.0,
+            plausible=(4.0, 60.0),
+            logarithmic=True,
+        ),
+        Parameter("damping", 0.0, "bristle damping", "N.m.s/rad", 0.0, 5.0, plausible=(0.001, 0.1), logarithmic=True),
     ),
     strength=("stiffness",),
+    typical={"stiffness": 40.0, "damping": 0.03},
+    variants=(Variant(("stiffness", "damping"), grid(stiffness=(5.0, 15.0, 50.0), damping=(0.02,))),),
+    # rad: of the friction contact, at the shaft where the teeth have parted; and of the motor side then
+    state=("bristle", "motor_bristle"),
+    memory="brief",
 )
 
 

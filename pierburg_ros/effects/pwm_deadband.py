@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -10,11 +10,15 @@ EFFECT = Effect(
     stage="input",
     sentence="Small commands do not reach the motor.",
     equation="effective duty = sign(duty) max(abs(duty) - width, 0)",
-    origin=CONTRACT,
+    source="Mohan, Undeland, Robbins, Power Electronics, 3rd ed. (2003)",
     shows_in="small duty, and every change of its sign",
     record="the return at duty 0, and negative duty",
-    parameters=(Parameter("width", "1", 0.0, 0.5, (0.004, 0.04), "duty that is lost"),),
+    parameters=(Parameter("width", None, "duty that is lost", "1", 0.0, 0.5, plausible=(0.004, 0.04), stride=5.0),),
     strength=("width",),
+    typical={"width": 0.02},
+    variants=(Variant(("width",), grid(width=(0.005, 0.015, 0.04))),),
+    linear=True,
+    drives=("voltage",),
 )
 
 

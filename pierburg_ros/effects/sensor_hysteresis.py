@@ -1,6 +1,6 @@
 """Play between the shaft and the magnet of the sensor."""
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,11 +8,18 @@ EFFECT = Effect(
     stage="sensor",
     sentence="The sensor trails behind the shaft by a fixed angle, on the other side after each reversal.",
     equation="total play width between shaft and magnet, centred at the start",
-    origin=CONTRACT,
+    source="Visintin, Differential Models of Hysteresis (1994)",
     shows_in="each reversal, independent of speed",
     record="slow reversals at several angles",
-    parameters=(Parameter("width", "rad", 0.0, 0.5, (0.004, 0.04), "total play"),),
+    parameters=(Parameter("width", None, "total play", "rad", 0.0, 0.5, plausible=(0.004, 0.04), stride=5.0),),
     strength=("width",),
+    typical={"width": 0.004},
+    variants=(Variant(("width",), grid(width=(0.005, 0.02))),),
+    # rad: the magnet, and the shaft when the magnet last followed it
+    state=("magnet", "followed"),
+    memory="brief",
+    linear=True,
+    sensors=("hall_voltage", "position"),
 )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -10,11 +10,19 @@ EFFECT = Effect(
     stage="sensor",
     sentence="The sensor shows where the shaft was a moment ago.",
     equation="time_constant d(measured angle)/dt = angle - measured angle",
-    origin=CONTRACT,
+    source="Doebelin, Measurement Systems, 5th ed. (2004)",
     shows_in="fast travel and its sharp ends",
     record="sharp random steps and stop contacts",
-    parameters=(Parameter("time_constant", "s", 0.0, 1.0, (0.002, 0.03), "of the first-order lag"),),
+    parameters=(
+        Parameter("time_constant", None, "of the first-order lag", "s", 0.0, 1.0, plausible=(0.002, 0.03), stride=5.0),
+    ),
     strength=("time_constant",),
+    typical={"time_constant": 0.002},
+    variants=(Variant(("time_constant",), grid(time_constant=(0.003, 0.01, 0.025))),),
+    # rad, the angle that the sensor shows
+    state=("lagged",),
+    memory="brief",
+    linear=True,
 )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -10,14 +10,39 @@ EFFECT = Effect(
     stage="sensor",
     sentence="The sensor reads a little too high or too low between its end points.",
     equation="Hall span (x + amplitude sin(half_waves pi x)), x = angle / (pi/2)",
-    origin=CONTRACT,
+    source="Fraden, Handbook of Modern Sensors, 5th ed. (2016)",
     shows_in="a smooth error over the angle, at rest too",
     record="standstills over the whole travel, and runs to both stops",
     parameters=(
-        Parameter("amplitude", "1", -0.3, 0.3, (-0.06, 0.06), "largest error as a fraction of the span"),
-        Parameter("half_waves", "1", 1.0, 2.0, (1.0, 2.0), "half waves over the span", choices=(1.0, 2.0)),
+        Parameter(
+            "amplitude",
+            None,
+            "largest error as a fraction of the span",
+            "1",
+            -0.3,
+            0.3,
+            plausible=(-0.06, 0.06),
+            stride=5.0,
+        ),
+        Parameter(
+            "half_waves",
+            None,
+            "half waves over the span",
+            "1",
+            1.0,
+            2.0,
+            choices=(1.0, 2.0),
+            plausible=(1.0, 2.0),
+        ),
     ),
     strength=("amplitude",),
+    typical={"amplitude": 0.0015, "half_waves": 1.0},
+    variants=(
+        Variant(("amplitude",), grid(amplitude=(-0.03, 0.03)), {"half_waves": 1.0}),
+        Variant(("amplitude",), grid(amplitude=(-0.03, 0.03)), {"half_waves": 2.0}),
+    ),
+    linear=True,
+    sensors=("hall_voltage",),
 )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -10,20 +10,24 @@ EFFECT = Effect(
     stage="sensor",
     sentence="The measurement comes in steps.",
     equation="measured value rounded to multiples of step",
-    origin=CONTRACT,
+    source="Widrow, Kollar, Quantization Noise (2008)",
     shows_in="standstills; a staircase at slow travel",
     record="very slow ramps with little noise",
     parameters=(
         Parameter(
             "step",
+            None,
+            "resolution (rad where the angle itself is measured)",
             "V",
             0.0,
             1.0,
-            (0.001, 0.05),
-            "resolution (rad where the angle itself is measured)",
+            plausible=(0.001, 0.05),
         ),
     ),
     strength=("step",),
+    typical={"step": 0.005},
+    linear=True,
+    rounds="step",
 )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -11,29 +11,41 @@ EFFECT = Effect(
     sentence="It sticks harder than it slides: after standing still the shaft breaks loose with a jump.",
     equation="friction level T_c + (breakaway_torque - T_c) exp(-(w/stribeck_velocity)^2), "
     "stick up to breakaway_torque",
-    origin=ARMSTRONG,
+    source=ARMSTRONG,
     shows_in="first movement after standstill",
     record="slow ramps with standstills between them",
     parameters=(
         Parameter(
             "breakaway_torque",
+            None,
+            "torque that breaks the shaft loose; at least coulomb_friction",
             "N.m",
             0.0,
             5.0,
-            (0.21, 0.32),
-            "torque that breaks the shaft loose; at least coulomb_friction",
+            plausible=(0.21, 0.32),
+            above="coulomb_friction",
         ),
         Parameter(
             "stribeck_velocity",
+            0.0,
+            "velocity over which the excess fades; 0: at once",
             "rad/s",
             0.0,
             20.0,
-            (0.02, 0.3),
-            "velocity over which the excess fades; 0: at once",
-            default=0.0,
+            plausible=(0.02, 0.3),
+            logarithmic=True,
         ),
     ),
     strength=("breakaway_torque",),
+    # what exceeds the sliding friction, here 40 % of the Pierburg actuator's
+    typical={"breakaway_torque": 0.08028, "stribeck_velocity": 0.1},
+    variants=(
+        Variant(
+            ("breakaway_torque", "stribeck_velocity"),
+            grid(breakaway_torque=(0.03, 0.06, 0.1), stribeck_velocity=(0.04, 0.12)),
+        ),
+    ),
+    jumps=True,
 )
 
 

@@ -1,6 +1,6 @@
 """Elastic end stops."""
 
-from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,14 +8,26 @@ EFFECT = Effect(
     stage="load",
     sentence="The end stops give a little and bounce instead of stopping dead.",
     equation="one-sided, both stops: torque = max(0, stiffness p + damping dp/dt) at penetration p",
-    origin="Kelvin-Voigt contact; Johnson, Contact Mechanics (1985), section 11.4",
+    source="Kelvin-Voigt contact; Johnson, Contact Mechanics (1985)",
     shows_in="contact with a stop",
     record="duty that presses against each stop, more and less",
     parameters=(
-        Parameter("stiffness", "N.m/rad", 0.0, 100000.0, (5.0, 60.0), "contact stiffness; 0: rigid"),
-        Parameter("damping", "N.m.s/rad", 0.0, 5.0, (0.001, 0.1), "contact damping", default=0.0),
+        Parameter(
+            "stiffness",
+            None,
+            "contact stiffness; 0: rigid",
+            "N.m/rad",
+            0.0,
+            100000.0,
+            plausible=(5.0, 60.0),
+            logarithmic=True,
+        ),
+        Parameter("damping", 0.0, "contact damping", "N.m.s/rad", 0.0, 5.0, plausible=(0.001, 0.1), logarithmic=True),
     ),
     strength=("stiffness",),
+    typical={"stiffness": 30.0, "damping": 0.01},
+    variants=(Variant(("stiffness", "damping"), grid(stiffness=(6.0, 20.0, 60.0), damping=(0.02,))),),
+    stops=True,
 )
 
 

@@ -1,6 +1,6 @@
 """A supply whose voltage falls under current."""
 
-from pierburg_ros.effects.effect import CONTRACT, Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,20 +8,27 @@ EFFECT = Effect(
     stage="drive",
     sentence="The supply voltage drops when the motor draws current: thin wires or a weak battery.",
     equation="supply - source_resistance duty i",
-    origin=CONTRACT,
+    source="Mohan, Undeland, Robbins, Power Electronics, 3rd ed. (2003)",
     shows_in="large duty",
     record="steps to small and to full duty, with the supply voltage logged",
     parameters=(
         Parameter(
             "source_resistance",
+            None,
+            "resistance of supply and wiring; less than armature_resistance",
             "ohm",
             0.0,
             50.0,
-            (0.2, 3.5),
-            "resistance of supply and wiring; less than armature_resistance",
+            plausible=(0.2, 3.5),
+            below="armature_resistance",
+            stride=5.0,
         ),
     ),
     strength=("source_resistance",),
+    typical={"source_resistance": 0.5},
+    variants=(Variant(("source_resistance",), grid(source_resistance=(0.5, 1.5, 3.0))),),
+    linear=True,
+    drives=("voltage",),
 )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -11,21 +11,37 @@ EFFECT = Effect(
     sentence="The motor gets warm under load and weaker with it.",
     equation="R (1 + 0.0039 rise), heat_capacity d(rise)/dt = i^2 R - rise / thermal_resistance, "
     "rise 0 at the first sample",
-    origin="copper, 0.0039 1/K at 20 degC; IEC 60028",
+    source="copper, 0.0039 1/K at 20 degC; IEC 60028, International standard of resistance for copper (1925)",
     shows_in="grows over the recording with the current drawn",
     record="long holding at high duty, then a pause",
     parameters=(
         Parameter(
             "thermal_resistance",
+            None,
+            "winding to ambient; 0: no heating",
             "K/W",
             0.0,
             500.0,
-            (5.0, 60.0),
-            "winding to ambient; 0: no heating",
+            plausible=(5.0, 60.0),
+            logarithmic=True,
         ),
-        Parameter("heat_capacity", "J/K", 0.001, 1000.0, (0.1, 5.0), "of the winding"),
+        Parameter(
+            "heat_capacity", None, "of the winding", "J/K", 0.001, 1000.0, plausible=(0.1, 5.0), logarithmic=True
+        ),
     ),
     strength=("thermal_resistance",),
+    typical={"thermal_resistance": 20.0, "heat_capacity": 1.0},
+    variants=(
+        Variant(
+            ("thermal_resistance", "heat_capacity"),
+            grid(thermal_resistance=(10.0, 30.0), heat_capacity=(0.15, 0.5, 2.0)),
+        ),
+    ),
+    # K, of the winding
+    state=("rise",),
+    memory="lasting",
+    linear=True,
+    drives=("voltage",),
 )
 
 

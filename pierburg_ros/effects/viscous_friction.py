@@ -1,6 +1,6 @@
 """Viscous friction: a torque in proportion to velocity."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -8,11 +8,25 @@ EFFECT = Effect(
     stage="friction",
     sentence="The mechanism is harder to turn the faster it turns, like a bearing in cold grease.",
     equation="friction + coefficient w",
-    origin=ARMSTRONG,
+    source=ARMSTRONG,
     shows_in="fast travel, both directions",
     record="full-duty travel in both directions, and the motor resistance measured",
-    parameters=(Parameter("coefficient", "N.m.s/rad", 0.0, 2.0, (0.01, 0.1), "torque per velocity at the shaft"),),
+    parameters=(
+        Parameter(
+            "coefficient",
+            None,
+            "torque per velocity at the shaft",
+            "N.m.s/rad",
+            0.0,
+            2.0,
+            plausible=(0.01, 0.1),
+            stride=5.0,
+        ),
+    ),
     strength=("coefficient",),
+    typical={"coefficient": 0.03},
+    variants=(Variant(("coefficient",), grid(coefficient=(0.03,))),),
+    linear=True,
 )
 
 

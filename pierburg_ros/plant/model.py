@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,9 +12,12 @@ import numpy as np
 import yaml
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
+
+PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
+"""Parameters of effects that keep above or below a base parameter."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class Model:
     @property
     def active_effects(self) -> tuple[str, ...]:
         """Ids of the effects that act, in the order of the signal path."""
-        return tuple(e.id for e in EFFECTS if any(self.values[f"{e.id}.{n}"] != 0.0 for n in e.strength))
+        return tuple(effect.id for effect in EFFECTS if effect.acts(self.values))
 
     def range(self, name: str) -> tuple[float, float]:
         """Accepted range of the parameter called `name`; InputError where there is none."""
@@ -64,8 +66,7 @@ class Model:
                 f"There is no parameter {name} in actuator {self.actuator.name}; expected one of "
                 f"{', '.join(self.actuator.parameters)} or effect.parameter."
             )
-        effect, own = name.split(".")
-        declared = EFFECT[effect].parameter(own)
+        declared = DECLARED[name]
         return min(declared.minimum, 0.0), declared.maximum
 
     def record(self) -> np.ndarray:
@@ -80,31 +81,26 @@ class Model:
 
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)
-        if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
-            raise InputError(f"{name} is {value!r}; expected a number.")
-        if not math.isfinite(value) or not minimum <= value <= maximum:
-            raise InputError(f"{name} is {value:g}; expected {minimum:g} to {maximum:g}.")
-        if "." in name:
-            effect, own = name.split(".")
-            choices = EFFECT[effect].parameter(own).choices
-            if choices and value != 0.0 and value not in choices:
-                expected = " or ".join(f"{c:g}" for c in choices)
-                raise InputError(f"{name} is {value:g}; expected {expected}.")
+        declared = self.actuator.parameters[name] if name in self.actuator.parameters else DECLARED[name]
+        number = float(value) if isinstance(value, (np.floating, np.integer)) else value
+        absent = type(number) in (int, float) and number == 0.0 and minimum <= 0.0
+        if not absent:
+            replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(number, name)
 
     def _check_pairs(self) -> None:
-        value = self.values
-        breakaway = value["static_friction.breakaway_torque"]
-        if breakaway != 0.0 and breakaway < value["coulomb_friction"]:
-            raise InputError(
-                f"static_friction.breakaway_torque is {breakaway:g}; expected 0 (absent) or at least "
-                f"coulomb_friction, {value['coulomb_friction']:g}. Change both together."
-            )
-        source = value["supply_sag.source_resistance"]
-        if source != 0.0 and source >= value["armature_resistance"]:
-            raise InputError(
-                f"supply_sag.source_resistance is {source:g}; expected less than armature_resistance, "
-                f"{value['armature_resistance']:g}."
-            )
+        for name, declared in PAIRS.items():
+            value = self.values[name]
+            if value == 0.0:
+                continue
+            if declared.above is not None and value < self.values[declared.above]:
+                raise InputError(
+                    f"{name} is {value:g}; expected 0 (absent) or at least {declared.above}, "
+                    f"{self.values[declared.above]:g}. Change both together."
+                )
+            if declared.below is not None and value >= self.values[declared.below]:
+                raise InputError(
+                    f"{name} is {value:g}; expected less than {declared.below}, {self.values[declared.below]:g}."
+                )
 
     def as_mapping(self) -> dict[str, Any]:
         """The model file's content: what differs from nominal, the effects that act, the residual torque."""
@@ -126,16 +122,6 @@ class Model:
         """Write the model file (section 6 of the contract)."""
         text = yaml.safe_dump(_plain(self.as_mapping()), sort_keys=False, default_flow_style=None)
         Path(path).write_text(text, encoding="utf-8")
-
-    @staticmethod
-    def read(source: str | Path | Mapping[str, Any], actuator: Actuator | None = None) -> Model:
-        """Read a model file; InputError names the line of what cannot be used.
-
-        The file's `actuator` is a shipped name or a path; `actuator` overrides it.
-        """
-        from pierburg_ros.plant.model_file import read_model
-
-        return read_model(source, actuator)
 
 
 def _plain(value: Any) -> Any:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import count
 from typing import Any
 
 import numpy as np
 
-from pierburg_ros.effects import EFFECTS
+from pierburg_ros.effects import EFFECTS, Effect
 
 RESIDUAL_NODES = 24
 """Most nodes an axis of the residual torque may have."""
@@ -43,16 +43,14 @@ PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
     + [("serial", np.int64), ("finest", np.float64), ("measures_position", np.bool_)]
-    + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_)]
+    + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
     align=True,
 )
 
-_BENDING_STAGES = ("load", "friction")
-_STRAIGHT = ("viscous_friction", "direction_dependent_friction")
-_SENSOR_STATES = ("sensor_lag", "sensor_hysteresis")
-_MEMORIES = ("input_delay", "thermal_resistance", "armature_inductance", "backlash", "gear_compliance", *_SENSOR_STATES)
+_OUTSIDE = ("input", "drive", "sensor")
+"""Stages whose states are advanced beside the mechanics: in short stretches, at whose ends the two meet."""
 _serial = count(1)
 
 
@@ -65,9 +63,10 @@ def pack(
 ) -> np.ndarray:
     """Parameter record, shape (1,), from flat dotted names.
 
-    `plain` says that torques are straight lines of angle and velocity between events, `linear` that nothing but
-    angle and velocity has a memory besides, `finest` [rad] over which travel torques may bend; `serial` tells
-    one record from any other.
+    `plain` says that torques are straight lines of angle and velocity between events, `linear` that nothing but angle
+    and velocity has a memory besides, `finest` [rad] over which travel torques may bend. `creeps` says that states of
+    drive or sensor change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from
+    any other.
     """
     record = np.zeros(1, PARAMETERS)
     for name in BASE:
@@ -77,27 +76,21 @@ def pack(
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
     record["measures_position"] = measures_position
     _pack_residual(record, residual)
-    present = {e.id for e in EFFECTS if any(values[f"{e.id}.{name}"] != 0.0 for name in e.strength)}
-    bending = {e.id for e in EFFECTS if e.stage in _BENDING_STAGES and e.id not in _STRAIGHT}
-    plain = not (present & bending) and values["gravity_torque"] == 0.0 and residual is None
+    present = [effect for effect in EFFECTS if effect.acts(values)]
+    creeping = {effect.stage for effect in present if effect.state and effect.stage in _OUTSIDE}
+    plain = all(effect.linear for effect in present) and values["gravity_torque"] == 0.0 and residual is None
     record["plain"] = plain
-    record["linear"] = plain and not present.intersection(_MEMORIES)
-    record["sensor_moves"] = bool(present.intersection(_SENSOR_STATES))
-    record["finest"] = _finest(values, residual)
+    record["linear"] = plain and all(effect.memory == "none" for effect in present)
+    record["creeps"], record["sensor_moves"] = bool(creeping), "sensor" in creeping
+    record["finest"] = _finest(present, values, residual)
     record["serial"] = next(_serial)
     return record
 
 
-def _finest(values: Mapping[str, float], residual: Mapping[str, Any] | None) -> float:
+def _finest(present: Sequence[Effect], values: Mapping[str, float], residual: Mapping[str, Any] | None) -> float:
     """Travel [rad] within which no torque over the angle turns more than once."""
-    ripple = values["cogging_torque.periods_per_motor_revolution"] * values["gear_ratio"]
-    features = [
-        0.5 if values["gravity_torque"] != 0.0 else math.inf,
-        2.0 / ripple if values["cogging_torque.amplitude"] * ripple > 0.0 else math.inf,
-        values["position_dependent_friction.width"]
-        if values["position_dependent_friction.amplitude"] != 0.0
-        else math.inf,
-    ]
+    features = [effect.turns_within(values) for effect in present if effect.turns_within is not None]
+    features.append(0.5 if values["gravity_torque"] != 0.0 else math.inf)
     if residual is not None and np.size(residual["angle"]) > 1:
         features.append(float(np.min(np.diff(residual["angle"]))))
     return min(features)

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.comparison.compare import compare
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import read_model
 from pierburg_ros.proof.bench import record
 from pierburg_ros.proof.formulation import simulate_textbook
 from pierburg_ros.proof.graph import record_over_graph
@@ -117,7 +117,7 @@ def unseen_rmse(folder: Path) -> float | None:
     model = folder / "diagnosis" / "model.yaml"
     if not model.exists():
         return None
-    return float(compare(Model.read(model), read_recording(folder / "holdout.mcap")).rmse)
+    return float(compare(read_model(model), read_recording(folder / "holdout.mcap")).rmse)
 
 
 def conduct(trial: Trial, folder: Path, version: str, command: Sequence[str] = DIAGNOSE) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from mcap.writer import Writer
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
-from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.plant import Inputs, Model, read_model, simulate
 from pierburg_ros.recording import write_simulated
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -64,7 +64,7 @@ def test_names_the_effect_and_writes_every_file(recording: Path, tmp_path: Path,
     assert document["verdict"] == "missing_physics"
     assert [effect["id"] for effect in document["effects"]] == ["sensor_lag"]
     assert document["fit"]["validation"]["final_rmse"] < 1.1 * 0.003
-    assert Model.read(tmp_path / "out" / "model.yaml").active_effects == ("sensor_lag",)
+    assert read_model(tmp_path / "out" / "model.yaml").active_effects == ("sensor_lag",)
     assert (tmp_path / "out" / "overview.png").stat().st_size > 10_000
     assert "sensor lag" in (tmp_path / "out" / "report.html").read_text()
     assert "missing physics" in capsys.readouterr().out

@@ -9,7 +9,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
 from pierburg_ros.identification.experiment.excitation import duty_sequence
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import Model, read_model
 from pierburg_ros.recording.write import write_simulated
 
 
@@ -34,7 +34,7 @@ def test_identify_writes_every_result(recorded, tmp_path, capsys):
     assert run("identify", recorded, "--output", output) == 0
     content = json.loads((output / "identification.json").read_text())
     assert content["lumps"]["gain"]["value"] == pytest.approx(18.862, rel=0.01)
-    assert Model.read(output / "model.yaml").values["coulomb_friction"] == pytest.approx(0.2007, rel=0.01)
+    assert read_model(output / "model.yaml").values["coulomb_friction"] == pytest.approx(0.2007, rel=0.01)
     names = {path.name for path in output.iterdir()}
     assert {"identification.html", "fit.png", "static_characteristic.png"} <= names
     shown = capsys.readouterr().out

@@ -50,7 +50,7 @@ def test_ids_are_unique() -> None:
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
 def test_declaration_is_complete(effect: Effect) -> None:
-    texts = (effect.sentence, effect.equation, effect.origin, effect.shows_in, effect.record)
+    texts = (effect.sentence, effect.equation, effect.source, effect.shows_in, effect.record)
     assert all(text.strip() for text in texts)
     assert effect.sentence.endswith(".")
     assert set(effect.strength) <= set(effect.names) and effect.strength[0] == effect.names[0]

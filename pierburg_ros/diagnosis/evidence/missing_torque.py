@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.braking import braking
 
 Signal = NDArray[np.float64]
 
@@ -28,6 +30,25 @@ class MissingTorque:
     angle: Signal
     velocity: Signal
     torque: Signal
+    gear_ratio: float
+    end: float
+    """Last moment of the recording [s]."""
+
+    def turns(self, between: tuple[float, float], most: int) -> list[float]:
+        """The strongest rhythms over the angle [periods per motor revolution], strongest first."""
+        return rhythms(self.angle * self.gear_ratio / (2 * math.pi), self.torque, between, most)
+
+    def pulses(self, between: tuple[float, float], most: int) -> list[float]:
+        """The strongest rhythms in time [Hz], strongest first."""
+        return rhythms(self.time, self.torque, between, most)
+
+    def spans(self, most: int) -> list[tuple[float, float, float]]:
+        """Spans of time in which the torque stands out: start [s], end [s] or 0 for never, torque [N.m]."""
+        return spans(self.time, self.torque, self.end, most)
+
+    def tight_spots(self, most: int) -> list[float]:
+        """Angles [rad] at which more friction is missing than elsewhere, the clearest first."""
+        return tight_spots(self, most)
 
 
 def missing_torque(data: EvidenceData, run: Run, model: Model) -> MissingTorque:
@@ -41,14 +62,14 @@ def missing_torque(data: EvidenceData, run: Run, model: Model) -> MissingTorque:
     grid = np.arange(run.time[0], run.time[-1], GRID)
     simulated = _averaged(run.time, run.simulated(model), grid) * scale
     measured = _averaged(run.time, run.measured, grid) * scale
-    constant = value["gear_ratio"] * value["torque_constant"]
-    damping = constant**2 / value["armature_resistance"] + value["viscous_friction.coefficient"]
+    damping = braking(model)
     stiffness = value.get("spring_stiffness", 0.0)
     error = measured - simulated
     torque = -(damping * np.gradient(error, GRID) + stiffness * error)
     speeds = np.gradient(measured, GRID), np.gradient(simulated, GRID)
     moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
-    return MissingTorque(grid[moving], measured[moving], speeds[0][moving], torque[moving])
+    time, angle, velocity = grid[moving], measured[moving], speeds[0][moving]
+    return MissingTorque(time, angle, velocity, torque[moving], value["gear_ratio"], float(run.time[-1]))
 
 
 def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:

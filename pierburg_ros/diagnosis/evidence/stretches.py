@@ -8,12 +8,13 @@ import numpy as np
 
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
+from pierburg_ros.effects import EFFECTS
 
 SETTLED = 5
 """Samples to either side of a restart over which the angle is averaged while the shaft stands still."""
 FEWEST = 5
 """A stretch has at least so many samples."""
-REMEMBERED = frozenset({"thermal_resistance"})
+REMEMBERED = frozenset(effect.id for effect in EFFECTS if effect.memory == "lasting")
 """Effects with a memory longer than any stretch: none shows them."""
 
 

@@ -20,6 +20,7 @@ from pierburg_ros.diagnosis.search.intervals import Estimate, estimates
 from pierburg_ros.diagnosis.search.refinement import polished
 from pierburg_ros.diagnosis.search.selection import EXPLAINED
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives, explore_alternatives
+from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.plant import Model
 
 Signal = NDArray[np.float64]
@@ -90,8 +91,8 @@ def settled(exploration: Exploration, chosen: Fit) -> tuple[Fit, dict[str, Estim
 
 def rounded(fit: Fit, step: float) -> Fit:
     """`fit` with its model's samples rounded to `step`; what it leaves is that of the smooth one."""
-    variant = Variant("sensor_quantization", (), (("step", step),))
-    values = {"sensor_quantization.step": step}
+    variant = Variant(ROUNDING.id, (), ((STEP.removeprefix(f"{ROUNDING.id}."), step),))
+    values = {STEP: step}
     switch = fit.switch and replace(fit.switch, model=fit.switch.model.with_values(values))
     model = fit.model.with_values(values)
     return replace(

@@ -7,6 +7,7 @@ then believed if, fitted on the other recordings, it lowers the error on the rec
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -16,11 +17,13 @@ from threadpoolctl import threadpool_limits
 
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, rms
 from pierburg_ros.diagnosis.report.words import by_recordings_left_out
-from pierburg_ros.diagnosis.search.candidates import Start, starts_of
+from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant, canonical, without
 from pierburg_ros.diagnosis.search.explore import BRIEF, Exploration
 from pierburg_ros.diagnosis.search.fits import Fit, Search
 from pierburg_ros.diagnosis.verdict.conclusion import Support
+from pierburg_ros.effects import EFFECTS
+from pierburg_ros.effects.effect import Start
 
 Signal = NDArray[np.float64]
 
@@ -32,7 +35,7 @@ WORTH = 0.85
 """An effect must bring the error on recordings left out below this share of what it was."""
 MOST = 5
 """Most effects chosen."""
-OWN_TIME = frozenset({"external_load"})
+OWN_TIME = frozenset(effect.id for effect in EFFECTS if effect.dated)
 """Effects that belong to one recording's time and cannot be shared."""
 
 
@@ -93,7 +96,7 @@ def _folds(data: EvidenceData) -> list[tuple[EvidenceData, EvidenceData]]:
     return pairs
 
 
-def _tasks(exploration: Exploration, data: EvidenceData, chosen: Fit) -> list[tuple[Explanation, list[Start]]]:
+def _tasks(exploration: Exploration, data: EvidenceData, chosen: Fit) -> list[tuple[Explanation, Sequence[Start]]]:
     tasks = []
     for variant, starts in starts_of(data, chosen.model).items():
         grown = chosen.explanation.plus(variant)
@@ -102,7 +105,7 @@ def _tasks(exploration: Exploration, data: EvidenceData, chosen: Fit) -> list[tu
     return tasks
 
 
-def _look(search: Search, chosen: Fit, task: tuple[Explanation, list[Start]]) -> Fit | None:
+def _look(search: Search, chosen: Fit, task: tuple[Explanation, Sequence[Start]]) -> Fit | None:
     grown, starts = task
     promised = search.screened(chosen, grown.variants[-1], starts)[:2]
     fits = [search.fit(grown, {**chosen.values, **start}, BRIEF) for _, start in promised]

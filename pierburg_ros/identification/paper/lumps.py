@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pierburg_ros.estimation.fit import Fit
 from pierburg_ros.estimation.uncertainty import RANK
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.braking import braking
 
 UNITS = {"time_constant": "s", "gain": "rad", "preload_angle": "rad", "friction_angle": "rad"}
 DUTY_UNITS = {"D_c": "1", "D_pre": "1"}
@@ -34,9 +35,8 @@ def lumps(model: Model) -> dict[str, float]:
     value = model.values
     stiffness, resistance = value["spring_stiffness"], value["armature_resistance"]
     constant = value["gear_ratio"] * value["torque_constant"]
-    braking = constant**2 / resistance + value["viscous_friction.coefficient"]
     return {
-        "time_constant": braking / stiffness,
+        "time_constant": braking(model) / stiffness,
         "gain": constant * value["supply_voltage"] / (resistance * stiffness),
         "preload_angle": value["spring_preload"] / stiffness,
         "friction_angle": value["coulomb_friction"] / stiffness,

@@ -9,7 +9,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.declaration import Declaration
-from pierburg_ros.plant import Model, Plant
+from pierburg_ros.plant import Model, Plant, read_model
 
 
 class Stepped(Protocol):
@@ -87,7 +87,7 @@ class Physics:
 
 def chosen_model(actuator: str, path: str) -> Model:
     """The model of a file, or the nominal one of an actuator where no file is named."""
-    model = Model.read(path) if path else Model.nominal(read_actuator(actuator))
+    model = read_model(path) if path else Model.nominal(read_actuator(actuator))
     if model.actuator.quantity != "hall_voltage":
         raise InputError(
             f"Actuator {model.actuator.name} measures its {model.actuator.quantity}; the plant needs one "
