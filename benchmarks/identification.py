@@ -12,9 +12,9 @@ import time
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.estimation.fit import fit
 from pierburg_ros.identification.experiment.excitation import duty_sequence
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.identification.fit import fit
 from pierburg_ros.identification.identify import free_names
 from pierburg_ros.identification.paper.lumps import duties, fitted_lumps, lumps
 from pierburg_ros.identification.paper.static_characteristic import static_characteristic

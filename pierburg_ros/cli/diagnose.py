@@ -13,10 +13,10 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
-from pierburg_ros.diagnosis.diagnose import Result
 from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
 from pierburg_ros.diagnosis.report.page import write_page, write_picture
 from pierburg_ros.diagnosis.report.terminal import shown
+from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 

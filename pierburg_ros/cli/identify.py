@@ -111,10 +111,10 @@ def print_results(console: Console, found: Identification, output: Path) -> None
         f" measurement noise {found.noise:.2g} {unit}.",
         soft_wrap=True,
     )
-    if not found.fitted.uncertainty.white:
+    if not found.fitted.covariance.white:
         console.print(
             "The residual is not white: the model lacks something, and the intervals are only as honest as "
-            f"{found.fitted.uncertainty.blocks} stretches of it allow. Try pierburg diagnose.",
+            f"{found.fitted.covariance.blocks} stretches of it allow. Try pierburg diagnose.",
             soft_wrap=True,
         )
     console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs")

@@ -19,7 +19,7 @@ from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Settings, read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.resimulation import inputs_of
+from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording, read_recording, write_recording
 from pierburg_ros.recording.write import Signal

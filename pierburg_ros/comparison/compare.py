@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.resimulation import resimulate
+from pierburg_ros.estimation.run import resimulated
 from pierburg_ros.estimation.start import from_standstill
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -104,7 +104,7 @@ class Comparison:
 def compare(model: Model, recording: Recording) -> Comparison:
     """`recording` beside the answer of `model` to its inputs, from where the shaft is first seen at rest."""
     recording = from_standstill(recording, Model.nominal(model.actuator))
-    simulated = resimulate(model, recording)
+    simulated = resimulated(model, recording)
     lost = np.flatnonzero(~np.isfinite(simulated))
     if lost.size:
         raise InputError(

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.effects import DECLARED
+from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
 from pierburg_ros.signals import Signal
@@ -17,9 +18,10 @@ DRIFT = math.log(6.0)
 """A base parameter is searched within this factor (logarithm) of its nominal value, either way."""
 WIDTH = 20.0
 """An effect's parameter is searched up to so many times what is plausible."""
-CAP = 0.98
-"""Largest share of the parameter that another one has to stay below: beyond it the simulation would divide by what
-is left, 2 % here, and every value there looks alike."""
+ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
+"""Parameters that are counted from a base parameter, by dotted name."""
+BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
+"""Parameters that stay below a base parameter, by dotted name."""
 
 
 @dataclass(frozen=True)
@@ -68,9 +70,7 @@ class Coordinates:
 
     def values(self, point: Signal) -> dict[str, float]:
         """Values by dotted name at `point`."""
-        result = {
-            name: axis.value(float(x)) for name, axis, x in zip(self.names, self.axes, point, strict=True)
-        }
+        result = {name: axis.value(float(x)) for name, axis, x in zip(self.names, self.axes, point, strict=True)}
         for name, below in ABOVE.items():
             if name in result:
                 highest = self.axes[self.names.index(name)].maximum
@@ -93,22 +93,6 @@ class Coordinates:
         return self.values(self.point(values))
 
 
-ABOVE = {
-    f"{effect.id}.{parameter.name}": parameter.above
-    for effect in EFFECTS
-    for parameter in effect.parameters
-    if parameter.above is not None
-}
-"""Parameters that are counted from a base parameter, by dotted name."""
-BELOW = {
-    f"{effect.id}.{parameter.name}": parameter.below
-    for effect in EFFECTS
-    for parameter in effect.parameters
-    if parameter.below is not None
-}
-"""Parameters that stay below a base parameter, by dotted name."""
-
-
 def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
     """`values` with pairs that must keep an order put in order; what they lack is nominal."""
     ordered = dict(values)
@@ -119,7 +103,7 @@ def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
     for name, below in BELOW.items():
         value, most = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, below))
         if value != 0.0 and value >= most:
-            ordered[name] = CAP * most
+            ordered[name] = HIGHEST_SHARE * most
     return ordered
 
 
@@ -141,8 +125,7 @@ def _axis_of_base(name: str, nominal: Model) -> Axis:
 
 
 def _axis_of_effect(name: str) -> Axis:
-    effect, own = name.split(".")
-    p = EFFECT[effect].parameter(own)
+    p = DECLARED[name]
     low, high = p.plausible
     minimum = p.minimum if p.least is None else p.least
     if p.logarithmic:

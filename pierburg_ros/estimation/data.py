@@ -11,6 +11,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, run_of
+from pierburg_ros.estimation.start import scale_of
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -54,6 +55,11 @@ class Data:
     def duration(self) -> float:
         """Time of the last sample of the first run [s]."""
         return float(self.runs[0].time[-1])
+
+    @property
+    def angle_per_unit(self) -> float:
+        """Angle of one unit of the measured quantity [rad/V], or 1 where the angle itself is measured."""
+        return 1.0 / scale_of(Model.nominal(self.actuator), self.runs[0].quantity)[1]
 
     def cut(self, duration: float) -> Data:
         """The first `duration` [s] of each run."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+
 @dataclass(frozen=True)
 class Variant:
     """One way in which an effect may act: which of its parameters are free, and the values of the others."""

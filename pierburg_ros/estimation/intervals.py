@@ -126,9 +126,7 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
     for _ in range(DOUBLINGS):
         starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
         tried = {tuple(start): start for start in starts}.values()
-        fits = [
-            estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried
-        ]
+        fits = [estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried]
         there = min(fits, key=lambda solution: solution.cost)
         if there.cost <= limit:
             points.append(there.point)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pierburg_ros.signals import Signal
+from pierburg_ros.signals import Flags, Signal
 
 Residual = Callable[[Signal], Signal]
 
@@ -73,9 +73,7 @@ def minimise(
     return Solution(point, value, lambda: slope(point, value))
 
 
-def jacobian(
-    residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal
-) -> Signal:
+def jacobian(residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal) -> Signal:
     """Derivative of `residual` at `point`, where it is `value`, by one-sided differences away from a bound."""
     if point.size == 0:
         return np.zeros((value.size, 0))
@@ -89,11 +87,10 @@ def jacobian(
 
 
 def _step(
-    slopes: Signal, value: Signal, point: Signal, lower: Signal, upper: Signal, free: Signal, damping: float
+    slopes: Signal, value: Signal, point: Signal, lower: Signal, upper: Signal, free: Flags, damping: float
 ) -> Signal:
     """Where a damped Gauss-Newton step leads; a quantity that a bound stops is left out and the rest solved again."""
     normal, gradient = slopes.T @ slopes, slopes.T @ value
-    free = free.copy()
     while free.any():
         inner = normal[np.ix_(free, free)]
         scale = np.diag(inner) + 1e-12 * max(float(np.max(np.diag(normal))), 1e-300)
@@ -102,5 +99,5 @@ def _step(
         blocked = free & (((trial < lower) & (point <= lower)) | ((trial > upper) & (point >= upper)))
         if not blocked.any():
             return np.asarray(np.clip(trial, lower, upper))
-        free &= ~blocked
+        free = free & ~blocked
     return np.array(point)

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pierburg_ros.effects import EFFECTS
+from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.signals import Signal
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured."""
 OFF_GRID = 0.02
 """Distance from the grid, in steps, that rounding of the file format may cause."""
-CONVERTER = next(effect for effect in EFFECTS if effect.rounds is not None)
-"""The effect whose parameter is the step of the converter: it is seen in the samples and needs no fit."""
 
 
 def coarse_step(measured: Sequence[Signal], noise: float) -> float:
@@ -26,8 +24,7 @@ def coarse_step(measured: Sequence[Signal], noise: float) -> float:
     """
     step = min(_grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
-    plausible = CONVERTER.parameter(CONVERTER.rounds or "").plausible[0]
-    return step if step >= plausible and step > COARSE * unrounded else 0.0
+    return step if step >= DECLARED[STEP].plausible[0] and step > COARSE * unrounded else 0.0
 
 
 def counted(residual: Signal, half_step: float) -> float:

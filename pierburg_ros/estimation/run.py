@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import Start, from_standstill
+from pierburg_ros.estimation.start import Start, from_standstill, scale_of
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
-from pierburg_ros.plant.decode import Decoding
 from pierburg_ros.recording import Recording
 from pierburg_ros.signals import Flags, Signal
 
@@ -28,8 +27,8 @@ class Run:
 
     `time` [s] and `measured` (in the recording's unit), shape (samples,); `start` is what the first samples say.
     `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
-    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoded`: a position that a Hall
-    sensor's voltage was turned into, by the actuator's nominal ends.
+    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoded`: volts at angle 0 and per
+    rad by which a Hall voltage was turned into the recorded position, None where it was not.
     """
 
     name: str
@@ -40,7 +39,7 @@ class Run:
     start: Start
     train: Flags
     validation: Flags
-    decoded: Decoding | None = None
+    decoded: tuple[float, float] | None = None
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -52,7 +51,10 @@ class Run:
             output = simulate(model, self.inputs, self.time, *start)
         else:
             output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
-        return output if self.decoded is None else self.decoded.angle(output)
+        if self.decoded is None:
+            return output
+        closed, per_radian = self.decoded
+        return (output - closed) / per_radian
 
     def cut(self, duration: float) -> Run:
         """The first `duration` [s] of the run."""
@@ -93,7 +95,7 @@ def run_of(recording: Recording, model: Model) -> Run:
         start,
         np.ones(recording.time.size, dtype=bool),
         np.zeros(recording.time.size, dtype=bool),
-        Decoding.of(Model.nominal(actuator)) if decodes else None,
+        scale_of(Model.nominal(actuator), "hall_voltage") if decodes else None,
     )
 
 
@@ -120,3 +122,8 @@ def inputs_in_force(recording: Recording, start: Start, model: Model) -> Inputs:
     inputs = inputs_of(recording)
     angle, _ = start.state(model, recording.quantity)
     return inputs.held_before() if angle > model.actuator.lower_stop else inputs
+
+
+def resimulated(model: Model, recording: Recording) -> Signal:
+    """What `model` would have measured over a `recording` from a standstill, in its unit, shape (samples,)."""
+    return run_of(recording, model).simulated(model)

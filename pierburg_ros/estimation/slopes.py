@@ -29,7 +29,8 @@ def central(residual: Residual, point: Signal, bounds: Bounds, step: float) -> S
     behind = np.maximum(point - step * np.eye(point.size), bounds[0])
     distance = np.maximum(np.diagonal(ahead - behind), 1e-300)
     columns = [
-        (residual(after) - residual(before)) / width for after, before, width in zip(ahead, behind, distance, strict=True)
+        (residual(after) - residual(before)) / width
+        for after, before, width in zip(ahead, behind, distance, strict=True)
     ]
     return np.stack(columns, axis=1)
 
@@ -68,13 +69,9 @@ def _across_jumps(
     return column
 
 
-def _bend(
-    residual: Residual, point: Signal, middle: Signal, bounds: Bounds, step: float
-) -> tuple[Signal, Signal]:
+def _bend(residual: Residual, point: Signal, middle: Signal, bounds: Bounds, step: float) -> tuple[Signal, Signal]:
     """The slopes at `point` and, for each column, how far those ahead and behind are apart."""
-    ahead, behind = (
-        np.clip(point + sign * step * np.eye(point.size), *bounds) for sign in (1.0, -1.0)
-    )
+    ahead, behind = (np.clip(point + sign * step * np.eye(point.size), *bounds) for sign in (1.0, -1.0))
     after, before = (np.stack([residual(there) for there in side], axis=1) for side in (ahead, behind))
     width = np.maximum(np.diagonal(ahead - behind), 1e-300)
     forward = np.maximum(np.diagonal(ahead) - point, 1e-300)

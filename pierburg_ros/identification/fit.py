@@ -1,93 +1,105 @@
-"""Bounded least squares of the simulated against the measured quantity, over whole recordings."""
+"""Fits of whole recordings: the parameters of an actuator, from several starts, as exact as the noise allows."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import optimize
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.problem import COARSE_STEP, FINE_STEP, Problem
-from pierburg_ros.estimation.scaling import Scaling
-from pierburg_ros.estimation.uncertainty import RANK, Uncertainty, uncertainty
+from pierburg_ros.estimation.covariance import RANK, Covariance
+from pierburg_ros.estimation.data import data_of, rms
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.intervals import covariance
+from pierburg_ros.estimation.refinement import COARSEST, refined
+from pierburg_ros.estimation.slopes import FINE
 from pierburg_ros.plant import Model
-from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.recording import Recording
+from pierburg_ros.signals import Signal
 
-Signal = NDArray[np.float64]
 GOOD = 1.1
 """A fit whose RMSE is below this multiple of the noise needs no second start."""
+ITERATIONS = 30
+"""Iterations after which a descent ends that still gains."""
 COARSE_TOLERANCE = 1e-3
-"""Relative change of the cost at which the wide difference steps have done their part."""
+"""Relative change of the cost at which wide differences have done their part."""
 ROUGH = 1e-3
 """Share of the cost that one more linear step promises and did not deliver: the cost is rough there."""
 SPREAD = 0.4
-"""Standard deviation of further starts, in scaled coordinates: 40 % of a positive parameter."""
+"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter."""
 
 
 @dataclass(frozen=True)
-class Fit:
+class Identified:
     """A fitted model with what is known of its free parameters.
 
-    `residuals` [measured unit], measured less simulated, one array a recording; `jacobian` of the residual to
-    the scaled coordinates (relative change for positive parameters), shape (samples, names).
+    `covariance` and `slopes`, shape (samples, names), are those of the coordinates of the search: relative changes for
+    positive base parameters. `slopes` are in units of the noise.
     """
 
-    model: Model
-    names: tuple[str, ...]
-    scaling: Scaling
-    coordinates: Signal
-    residuals: tuple[Signal, ...]
-    jacobian: Signal
-    uncertainty: Uncertainty
-    evaluations: int
+    estimator: Estimator
+    fit: Fit
+    covariance: Covariance
+    slopes: Signal
 
     @property
-    def rmse(self) -> float:
-        """Root mean square of all residuals, in the measured unit."""
-        return float(np.sqrt(np.mean(np.concatenate(self.residuals) ** 2)))
+    def model(self) -> Model:
+        """The fitted model."""
+        return self.fit.model
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Dotted names of the free parameters."""
+        return self.fit.explanation.names
 
     @property
     def values(self) -> dict[str, float]:
         """The fitted values of the free parameters."""
-        return {name: self.model.values[name] for name in self.names}
+        return {name: self.fit.values[name] for name in self.names}
 
     @property
-    def covariance(self) -> Signal:
-        """Covariance of the fitted values, in their units, shape (names, names)."""
-        slope = self.scaling.slope(self.coordinates)
-        return np.asarray(slope @ self.uncertainty.covariance @ slope.T)
+    def noise(self) -> float:
+        """Standard deviation of the residual, in the measured unit, counted with the freedom of the fit."""
+        return self.covariance.noise * self.estimator.data.noise
+
+    @cached_property
+    def residuals(self) -> tuple[Signal, ...]:
+        """Measured less simulated, one array a recording, in the measured unit."""
+        lengths = [run.time.size for run in self.estimator.data.runs]
+        return tuple(np.split(self.fit.solution.residual * self.estimator.data.noise, np.cumsum(lengths)[:-1]))
+
+    @property
+    def rmse(self) -> float:
+        """Root mean square of all residuals, in the measured unit."""
+        return rms(np.concatenate(self.residuals))
 
     @property
     def deviation(self) -> Signal:
-        """Standard deviation of each scaled coordinate (relative where positive), shape (names,)."""
-        return np.asarray(np.sqrt(np.diagonal(self.uncertainty.covariance)))
+        """Standard deviation of each coordinate (relative where positive), shape (names,)."""
+        return np.asarray(np.sqrt(np.diagonal(self.covariance.matrix)))
 
-    @property
+    @cached_property
     def ci95(self) -> dict[str, tuple[float, float]]:
         """95 % intervals, in the parameters' units; the whole range where nothing is known."""
-        half = self.uncertainty.factor * np.sqrt(np.diagonal(self.covariance))
-        half = np.where(self.uncertainty.undetermined, np.inf, half)
-        intervals = {}
-        for index, (name, value) in enumerate(self.values.items()):
-            minimum, maximum = self.model.range(name)
-            if self.scaling.relative[index] and value > 0.0:
-                factor = math.exp(min(half[index] / value, 700.0))
-                low, high = value / factor, value * factor
-            else:
-                low, high = value - half[index], value + half[index]
-            intervals[name] = (float(max(low, minimum)), float(min(high, maximum)))
-        return intervals
+        coordinates = self.estimator.coordinates(self.fit.explanation)
+        reach = np.diag(self.covariance.factor * self.deviation)
+        ends = [
+            (coordinates.values(self.fit.solution.point - move), coordinates.values(self.fit.solution.point + move))
+            for move in reach
+        ]
+        return {
+            name: self.model.range(name) if unknown else (low[name], high[name])
+            for name, unknown, (low, high) in zip(self.names, self.covariance.undetermined, ends, strict=True)
+        }
 
     @property
     def correlation(self) -> Signal:
         """Correlation of the fitted parameters, shape (names, names)."""
         spread = np.where(self.deviation > 0.0, self.deviation, 1.0)
-        return np.asarray(self.uncertainty.covariance / np.outer(spread, spread))
+        return np.asarray(self.covariance.matrix / np.outer(spread, spread))
 
 
 def fit(
@@ -96,107 +108,58 @@ def fit(
     free: Sequence[str],
     *,
     starts: int = 3,
-    simplex: bool = True,
+    refine: bool = True,
     tolerance: float = 1e-7,
     seed: int = 0,
-    threads: int | None = None,
-) -> Fit:
-    """Fit the parameters `free` (flat dotted names) of `model` to `recordings`; the others stay as they are.
+) -> Identified:
+    """Fit the parameters `free` (dotted names) of `model` to `recordings`; the others stay as they are.
 
     The first start is `model` itself; while the RMSE stays above the noise, up to `starts` are tried, the
-    further ones chosen among random points. Where the cost is too rough for its slope and `simplex` is true,
-    a derivative-free search goes on from there.
+    further ones chosen among random points. Where the cost is too rough for its slope and `refine` is true,
+    other local minima are searched from there.
     """
     if not free:
         raise InputError("There is no free parameter to fit; expected one or more. Free one.")
-    problem = Problem(recordings, Scaling.of(model, free), threads)
-    noise = float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings])))
-    goal = GOOD * noise * np.sqrt(problem.measured.size)
-    best = _descend(problem, np.zeros(len(free)), tolerance, simplex)
-    for start in _further_starts(problem, starts - 1, seed):
-        if np.linalg.norm(problem.residual(best)) <= goal:
+    estimator, explanation = Estimator(data_of(recordings, model), model), Explanation(tuple(free))
+    best = _descend(estimator, estimator.at(explanation), tolerance, refine)
+    for start in _further_starts(estimator, explanation, starts - 1, seed):
+        if best.ratio <= GOOD:
             break
-        other = _descend(problem, start, tolerance, simplex)
-        best = min(best, other, key=lambda point: float(np.linalg.norm(problem.residual(point))))
-    return evaluate(problem, best)
+        best = min(best, _descend(estimator, start, tolerance, refine), key=lambda fit: fit.chi2)
+    known, slopes = covariance(estimator, best)
+    return Identified(estimator, best, known, slopes)
 
 
-def evaluate(problem: Problem, coordinates: Signal) -> Fit:
-    """The fit that stands at `coordinates`, with its Jacobian and uncertainty."""
-    residual = problem.residual(coordinates)
-    jacobian = problem.sharp_jacobian(coordinates)
-    residuals = problem.parts(residual)
-    return Fit(
-        problem.scaling.model(coordinates),
-        problem.scaling.names,
-        problem.scaling,
-        coordinates,
-        residuals,
-        jacobian,
-        uncertainty(jacobian, residuals),
-        problem.evaluations,
-    )
+def _descend(estimator: Estimator, start: Fit, tolerance: float, refine: bool) -> Fit:
+    """A minimum near `start`: wide differences first, to look across stick and slip, then as fine as noise allows."""
+    coordinates = estimator.coordinates(start.explanation)
+    wide, fine = COARSEST * coordinates.steps, np.full(coordinates.steps.size, FINE)
+
+    def descended(fit: Fit, steps: Signal, until: float) -> Fit:
+        return estimator.fit(fit.explanation, fit.values, ITERATIONS, steps=steps, tolerance=until)
+
+    found = descended(descended(start, wide, max(tolerance, COARSE_TOLERANCE)), fine, tolerance)
+    if refine and _is_rough(found, *coordinates.bounds):
+        found = descended(refined(estimator, found), fine, tolerance)
+    return found
 
 
-def _descend(problem: Problem, start: Signal, tolerance: float, simplex: bool) -> Signal:
-    """Coordinates of a minimum near `start`: wide difference steps first, then as fine as noise allows."""
-    point = _least_squares(problem, start, max(tolerance, COARSE_TOLERANCE), COARSE_STEP)
-    point = _least_squares(problem, point, tolerance, FINE_STEP)
-    if not simplex or not _is_rough(problem, point):
-        return point
-    return _least_squares(problem, _simplex(problem, point), tolerance, FINE_STEP)
-
-
-def _least_squares(problem: Problem, start: Signal, tolerance: float, step: float) -> Signal:
-    lower, upper = problem.scaling.lower, problem.scaling.upper
-    margin = 1e-9 * (upper - lower)
-    solution = optimize.least_squares(
-        problem.residual,
-        np.clip(start, lower + margin, upper - margin),
-        lambda point: problem.jacobian(point, step),
-        (lower, upper),
-        ftol=tolerance,
-        xtol=1e-9,
-        gtol=1e-12,
-        max_nfev=30,
-    )
-    return np.asarray(solution.x)
-
-
-def _is_rough(problem: Problem, point: Signal) -> bool:
-    """Whether the slope at `point` promises a reduction that the descent did not find."""
-    residual, jacobian = problem.residual(point), problem.jacobian(point, FINE_STEP)
-    inside = (point > problem.scaling.lower + 1e-6) & (point < problem.scaling.upper - 1e-6)
+def _is_rough(fit: Fit, lower: Signal, upper: Signal) -> bool:
+    """Whether the slope at a fit promises a reduction that the descent did not find."""
+    point, residual, slopes = fit.solution.point, fit.solution.residual, fit.solution.jacobian
+    inside = (point > lower + 1e-6) & (point < upper - 1e-6)
     if not inside.any():
         return False
-    change = np.linalg.lstsq(jacobian[:, inside], residual, rcond=RANK)[0]
-    promised = float(np.sum((jacobian[:, inside] @ change) ** 2))
-    return promised > ROUGH * float(residual @ residual)
+    change = np.linalg.lstsq(slopes[:, inside], residual, rcond=RANK)[0]
+    return bool(np.sum((slopes[:, inside] @ change) ** 2) > ROUGH * fit.chi2)
 
 
-def _simplex(problem: Problem, point: Signal) -> Signal:
-    """The lowest point that a derivative-free search finds around `point`."""
-    search = optimize.minimize(
-        lambda other: float(np.sum(problem.residual(other) ** 2)),
-        point,
-        method="Nelder-Mead",
-        bounds=list(zip(problem.scaling.lower, problem.scaling.upper, strict=True)),
-        options={
-            "maxfev": 40 * point.size,
-            "initial_simplex": np.vstack([point, point + 0.02 * np.eye(point.size)]),
-            "xatol": 1e-5,
-            "fatol": 0.0,
-        },
-    )
-    return np.asarray(search.x)
-
-
-def _further_starts(problem: Problem, count: int, seed: int) -> list[Signal]:
+def _further_starts(estimator: Estimator, explanation: Explanation, count: int, seed: int) -> list[Fit]:
     """The `count` best of random starts, best first; none are drawn where none are wanted."""
     if count <= 0:
         return []
-    random = np.random.default_rng(seed)
-    points = SPREAD * random.standard_normal((4 * count, len(problem.scaling.names)))
-    points = np.clip(points, problem.scaling.lower, problem.scaling.upper)
-    costs = np.sum(problem.residuals(list(points)) ** 2, axis=1)
-    return [points[index] for index in np.argsort(costs)[:count]]
+    coordinates = estimator.coordinates(explanation)
+    middle = coordinates.point(estimator.nominal.values)
+    points = middle + SPREAD * np.random.default_rng(seed).standard_normal((4 * count, middle.size))
+    fits = [estimator.at(explanation, coordinates.values(np.clip(point, *coordinates.bounds))) for point in points]
+    return sorted(fits, key=lambda fit: fit.chi2)[:count]

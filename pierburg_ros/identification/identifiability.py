@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.estimation.fit import Fit
-from pierburg_ros.estimation.problem import Problem
-from pierburg_ros.estimation.scaling import Scaling
+from pierburg_ros.estimation.data import data_of
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.slopes import sharp
+from pierburg_ros.identification.fit import Identified
 from pierburg_ros.recording.recording import Recording
+from pierburg_ros.signals import Signal
 
-Signal = NDArray[np.float64]
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below a tenth of it."""
 MOST_PARTNERS = 4
@@ -25,8 +26,8 @@ MOST_PARTNERS = 4
 class Finding:
     """What a recording says of one parameter while those that are free adapt to any change of it.
 
-    `half_width` is its 95 % half-width, relative (for a parameter that may be negative: in tenths of its
-    plausible range); None where it is infinite. `imitation`: the percent change of others that equals +1 %.
+    `half_width` is its 95 % half-width, relative to its value; None where it is infinite.
+    `imitation`: the percent change of others that equals +1 %.
     """
 
     identifiable: bool
@@ -35,14 +36,24 @@ class Finding:
     reason: str
 
 
-def identifiability(fitted: Fit, recordings: Sequence[Recording]) -> dict[str, Finding]:
+def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict[str, Finding]:
     """A finding for every base parameter of the actuator, free or held, and every other free parameter."""
     names = tuple(dict.fromkeys([*fitted.model.actuator.parameters, *fitted.names]))
-    problem = Problem(recordings, Scaling.of(fitted.model, names))
-    jacobian = problem.sharp_jacobian(np.zeros(len(names)))
-    noise = max(fitted.uncertainty.noise, 1e-9)
-    trace = _Trace(names, fitted.names, jacobian, noise, recordings[0].unit)
+    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, recordings[0].unit)
     return {name: trace.finding(name) for name in names}
+
+
+def _relative_slopes(fitted: Identified, recordings: Sequence[Recording], names: tuple[str, ...]) -> Signal:
+    """Change of the residual [measured unit] by the relative change of each parameter, shape (samples, names)."""
+    estimator = Estimator(data_of(recordings, fitted.model), fitted.model)
+    explanation = Explanation(names)
+    coordinates = estimator.coordinates(explanation)
+    point = coordinates.point(fitted.model.values)
+    slopes = sharp(lambda there: estimator.residual_at(explanation, coordinates, there), point, coordinates.bounds)
+    relative = [
+        1.0 if axis.logarithmic or x == 0.0 else abs(x) for axis, x in zip(coordinates.axes, point, strict=True)
+    ]
+    return np.asarray(slopes * np.array(relative) * estimator.data.noise)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import numpy as np
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.fit import Fit, fit
-from pierburg_ros.estimation.resimulation import resimulate
+from pierburg_ros.estimation.run import resimulated
+from pierburg_ros.identification.fit import Identified, fit
 from pierburg_ros.identification.identifiability import Finding, identifiability
 from pierburg_ros.identification.paper.lumps import Lump, fitted_duties, fitted_lumps
 from pierburg_ros.identification.paper.static_characteristic import (
@@ -37,7 +37,7 @@ class Identification:
     """
 
     model: Model
-    fitted: Fit
+    fitted: Identified
     findings: dict[str, Finding]
     lumps: dict[str, Lump] | None
     static: StaticCharacteristic | None
@@ -143,7 +143,7 @@ def validation_rmse(start: Model, recordings: Sequence[Recording], names: Sequen
         end = unseen.time[0] + TRAINED_SHARE * unseen.duration
         seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
     fitted = fit(start, seen, names, starts=1)
-    residual = (unseen.measured - resimulate(fitted.model, unseen))[first:]
+    residual = (unseen.measured - resimulated(fitted.model, unseen))[first:]
     return float(np.sqrt(np.mean(residual**2)))
 
 

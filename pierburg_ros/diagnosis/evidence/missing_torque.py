@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-
-Signal = NDArray[np.float64]
+from pierburg_ros.signals import Signal
 
 GRID = 0.02
 """Time step [s] on which missing torque is estimated."""
@@ -51,7 +50,7 @@ class MissingTorque:
         return tight_spots(self, most)
 
 
-def missing_torque(data: EvidenceData, run: Run, model: Model) -> MissingTorque:
+def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
     """What the load torque of `model` lacks.
 
     While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque), from

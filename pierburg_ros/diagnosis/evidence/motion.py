@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.diagnosis.evidence.data import Run
-
-Signal = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from pierburg_ros.estimation.run import Run
+from pierburg_ros.estimation.start import scale_of
+from pierburg_ros.plant import Model
+from pierburg_ros.signals import Flags, Signal
 
 HALF_WINDOW = 0.02
 """Half the time [s] over which a velocity is taken; two samples where they are farther apart."""
@@ -36,6 +35,8 @@ class Motion:
     closed: Flags
     open: Flags
     actuator: Actuator
+    angle_per_unit: float
+    """Angle of one unit of the measured quantity."""
 
     @property
     def direction(self) -> Signal:
@@ -45,13 +46,13 @@ class Motion:
         return np.asarray(sign[last])
 
     @property
-    def reversals(self) -> NDArray[np.intp]:
+    def reversals(self) -> np.ndarray:
         """Samples at which the shaft sets off against its last direction."""
         direction = self.direction
         return np.flatnonzero((np.diff(direction) != 0.0) & (direction[:-1] != 0.0)) + 1
 
     @property
-    def departures(self) -> NDArray[np.intp]:
+    def departures(self) -> np.ndarray:
         """Samples at which a movement begins."""
         return np.flatnonzero(self.moving[1:] & ~self.moving[:-1]) + 1
 
@@ -88,10 +89,11 @@ class Motion:
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
-    angle, per_unit = angle_of(run.measured, actuator)
+    closed, per_radian = scale_of(Model.nominal(actuator), run.quantity)
+    angle, per_unit = (run.measured - closed) / per_radian, 1.0 / per_radian
     interval = float(np.median(np.diff(run.time)))
     half = max(HALF_WINDOW, 2.0 * interval)
-    spread = noise * per_unit
+    spread = noise * abs(per_unit)
     # each end of the difference is a mean over the half window
     slowest = max(SLOWEST, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
     velocity = slope(run.time, angle, half)
@@ -107,16 +109,8 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
         closed=angle <= actuator.lower_stop + near,
         open=angle >= actuator.upper_stop - near,
         actuator=actuator,
+        angle_per_unit=per_unit,
     )
-
-
-def angle_of(measured: Signal, actuator: Actuator) -> tuple[Signal, float]:
-    """Angle [rad] that the nominal sensor reads, and rad per measured unit."""
-    if actuator.quantity == "position":
-        return measured, 1.0
-    closed, opened = (actuator.parameters[f"hall_voltage_{end}"].nominal for end in ("closed", "open"))
-    per_volt = math.pi / 2.0 / (opened - closed)
-    return (measured - closed) * per_volt, abs(per_volt)
 
 
 def slope(time: Signal, values: Signal, half: float) -> Signal:

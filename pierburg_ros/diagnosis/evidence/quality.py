@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.diagnosis.evidence.data import Run
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import Start
+from pierburg_ros.estimation.run import Run
+from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -118,7 +118,7 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     motions = [motion_of(run, actuator, noise) for run in runs]
     return [
         *_limits_of_movement(motions, runs, noise),
-        *_limits_of_start(runs),
+        *_limits_of_start(runs, actuator),
         *_limits_of_sampling(runs),
         *_limits_of_reach(motions),
     ]
@@ -159,7 +159,7 @@ def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: f
     return limits
 
 
-def _limits_of_start(runs: Sequence[Run]) -> list[Limit]:
+def _limits_of_start(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
     limits = []
     late = [run.time[0] for run in runs if run.time[0] > 0.0]
     if late:
@@ -170,7 +170,8 @@ def _limits_of_start(runs: Sequence[Run]) -> list[Limit]:
                 " left out, for how fast it moved there cannot be told well enough.",
             )
         )
-    if any(run.initial_velocity != 0.0 and not Start.of(run.time, run.measured).known for run in runs):
+    nominal = Model.nominal(actuator)
+    if any(run.start.state(nominal, run.quantity)[1] != 0.0 and not run.start.known for run in runs):
         limits.append(
             Limit(
                 "begins_moving",

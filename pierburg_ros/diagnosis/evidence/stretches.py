@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
-from pierburg_ros.effects import EFFECTS
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.run import Run
+from pierburg_ros.estimation.start import Start
 
 SETTLED = 5
 """Samples to either side of a restart over which the angle is averaged while the shaft stands still."""
 FEWEST = 5
 """A stretch has at least so many samples."""
-REMEMBERED = frozenset(effect.id for effect in EFFECTS if effect.memory == "lasting")
-"""Effects with a memory longer than any stretch: none shows them."""
 
 
-def restarted(data: EvidenceData, length: float) -> EvidenceData:
+def forgotten(effects: Iterable[str]) -> bool:
+    """Whether none of some effects remembers longer than a stretch: what does cannot start afresh."""
+    return all(EFFECT[effect].memory != "lasting" for effect in effects)
+
+
+def restarted(data: Data, length: float) -> Data:
     """`data` with every run cut into stretches of `length` [s], each starting at the measured angle and velocity.
 
     Loads keep to the time of the recording; whatever else a model remembers (heat, play, bristles) starts afresh.
@@ -36,22 +42,17 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
     for first, last in zip(cuts, np.append(cuts[1:], run.time.size), strict=True):
         if last - first < FEWEST:
             continue
-        angle, velocity = _state(run, motion, int(first))
         part = run.part(slice(int(first), int(last)))
-        stretches.append(replace(part, initial_angle=angle, initial_velocity=velocity))
+        stretches.append(replace(part, start=_start(run, motion, int(first))))
     return stretches
 
 
-def _state(run: Run, motion: Motion, sample: int) -> tuple[float, float]:
-    """Angle [rad] and velocity [rad/s] at `sample`: exactly on a stop where the shaft touches it."""
+def _start(run: Run, motion: Motion, sample: int) -> Start:
+    """What the samples around `sample` say: their mean while the shaft stands still, with its velocity as it moves."""
     if sample == 0:
-        return run.initial_angle, run.initial_velocity
-    actuator = motion.actuator
-    for on, stop in ((motion.closed, actuator.lower_stop), (motion.open, actuator.upper_stop)):
-        if on[sample]:
-            return stop, 0.0
+        return run.start
     near = slice(max(sample - SETTLED, 0), sample + SETTLED + 1)
-    middle = float(np.mean(motion.time[near])) - float(motion.time[sample])
-    velocity = float(motion.velocity[sample]) if motion.moving[sample] else 0.0
-    angle = float(np.mean(motion.angle[near])) - velocity * middle
-    return min(max(angle, actuator.lower_stop), actuator.upper_stop), velocity
+    middle = float(np.mean(run.time[near])) - float(run.time[sample])
+    stands = motion.closed[sample] or motion.open[sample] or not motion.moving[sample]
+    rate = 0.0 if stands else float(motion.velocity[sample]) / motion.angle_per_unit
+    return Start(float(np.mean(run.measured[near])) - rate * middle, rate, run.start.noise, True)

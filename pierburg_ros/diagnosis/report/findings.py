@@ -2,27 +2,72 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from pierburg_ros.actuators.actuator import UNITS
-from pierburg_ros.diagnosis.report.words import effect_explanation, untestable
+from pierburg_ros.diagnosis.evidence import quality
+from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.location.locations import locations
+from pierburg_ros.diagnosis.location.regimes import regimes
+from pierburg_ros.diagnosis.location.windows import windows
+from pierburg_ros.diagnosis.remainder.shape import Shape
+from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
     Change,
+    Diagnosis,
     Effect,
     Errors,
     Estimate,
     FitQuality,
+    Location,
     NotTestable,
+    Regime,
+    ResidualTorque,
+    TorqueOverTime,
 )
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.explanation import AFTER, WHEN, Variant
-from pierburg_ros.diagnosis.search.explore import Exploration
-from pierburg_ros.diagnosis.search.fits import Fit
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain, tied
-from pierburg_ros.diagnosis.verdict.conclusion import Conclusion, rmse
-from pierburg_ros.diagnosis.verdict.ties import visibility
+from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.data import Data, rms
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
+from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
+from pierburg_ros.signals import Flags, Signal
+
+
+def document(found: Found, conclusion: Conclusion) -> Diagnosis:
+    """The whole document."""
+    data, actuator = found.data, found.data.actuator
+    named, parameters_found = effects(conclusion), parameters(found, conclusion)
+    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
+    limits = quality.limits_of(data.runs, actuator, data.noise)
+    text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit)
+    places, ranges = located(data, conclusion)
+    return Diagnosis(
+        schema=1,
+        recordings=[run.name for run in data.runs],
+        quantity=actuator.quantity,
+        unit=actuator.unit,
+        verdict=conclusion.verdict,
+        summary=words.cautioned(limits, text),
+        effects=named,
+        parameters=parameters_found,
+        changes=changed,
+        locations=places,
+        regimes=ranges,
+        fit=fit,
+        candidates=candidates(found, conclusion),
+        not_testable=hidden,
+        residual_torque=residual_torque(conclusion.shape),
+        data_quality=quality.data_quality(data.runs, actuator, data.noise),
+        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, limits),
+    )
 
 
 def effects(conclusion: Conclusion) -> list[Effect]:
@@ -45,7 +90,9 @@ def effects(conclusion: Conclusion) -> list[Effect]:
                 confidence=support.confidence,
                 parameters=parameters,
                 indistinguishable_from=ties,
-                explanation=effect_explanation(variant.effect, parameters, ties, support.reason),
+                explanation=words.effect_explanation(
+                    variant.effect, parameters, ties, words.reason(support, conclusion.final.model.actuator.unit)
+                ),
             )
         )
     return found
@@ -63,9 +110,9 @@ def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
     return [list(tie.instead) for tie in conclusion.alternatives if tie.quantity == quantity]
 
 
-def parameters(exploration: Exploration, conclusion: Conclusion) -> dict[str, BaseParameter]:
+def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]:
     """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted."""
-    actuator = exploration.data.actuator
+    actuator = found.data.actuator
     final = conclusion.final
     result = {}
     for name in actuator.parameters:
@@ -73,7 +120,7 @@ def parameters(exploration: Exploration, conclusion: Conclusion) -> dict[str, Ba
         known = conclusion.estimates.get(name)
         identifiable = known.identifiable if known else name in conclusion.recalibrated.explanation.drifted
         result[name] = BaseParameter(
-            nominal=exploration.nominal.values[name],
+            nominal=found.nominal.values[name],
             value=final.model.values[name],
             unit=UNITS[name][0],
             ci95=(known.low, known.high) if known else None,
@@ -93,29 +140,36 @@ def changes(chosen: Fit) -> list[Change]:
     return [Change(parameter=name, time=values[name + WHEN], before=values[name], after=values[name + AFTER])]
 
 
-def fit_quality(exploration: Exploration, conclusion: Conclusion, final: Model) -> FitQuality:
-    """Errors before and after, on samples that were fitted and on samples that were not."""
-    data = exploration.data
+def fit_quality(found: Found, conclusion: Conclusion) -> FitQuality:
+    """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has seen."""
+    data = found.data
 
-    def errors(training: bool) -> Errors:
+    def errors(samples: Flags) -> Errors:
         return Errors(
-            nominal_rmse=rmse(data, conclusion.nominal.model, None, training),
-            recalibrated_rmse=rmse(data, conclusion.recalibrated.model, None, training),
-            final_rmse=rmse(data, final, conclusion.final.switch, training),
+            nominal_rmse=rmse(data, samples, conclusion.nominal.model),
+            recalibrated_rmse=rmse(data, samples, conclusion.recalibrated.model),
+            final_rmse=rmse(data, samples, conclusion.model, conclusion.final.switch),
         )
 
-    return FitQuality(noise_floor=data.noise, training=errors(True), validation=errors(False))
+    return FitQuality(noise_floor=data.noise, training=errors(data.train), validation=errors(data.test))
 
 
-def candidates(exploration: Exploration, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
+def rmse(data: Data, samples: Flags, model: Model, switch: Switch | None = None) -> float | None:
+    """Root mean squared error on some samples, measured unit; None where there are none."""
+    residual = data.residual(model, switch)[samples]
+    return rms(residual) * data.noise if residual.size else None
+
+
+def candidates(found: Found, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
     """The explanations tried, the best first: error on unseen samples, evidence, status."""
-    data, chosen = exploration.data, conclusion.chosen
-    equals = {id(fit) for fit in tied(chosen, exploration.of_size(chosen.explanation.size), exploration.search)}
-    ranked = sorted(exploration.fits.values(), key=lambda fit: (fit is not chosen, fit.chi2))
+    data, chosen = found.data, conclusion.chosen
+    fits = {**found.fits, chosen.explanation: chosen} if data.step else found.fits
+    equals = {id(fit) for fit in tied(chosen, found.of_size(chosen.explanation.size), found.estimator)}
+    ranked = sorted(fits.values(), key=lambda fit: (fit is not chosen, fit.chi2))
     return [
         Candidate(
             id=identifier(fit),
-            validation_rmse=rmse(data, fit.model, fit.switch, False),
+            validation_rmse=rmse(data, data.test, fit.model, fit.switch),
             evidence=gain(conclusion.recalibrated, fit),
             status="chosen" if fit is chosen else "tied" if id(fit) in equals else "rejected",
         )
@@ -129,17 +183,61 @@ def identifier(fit: Fit) -> str:
     return "+".join((*fit.explanation.drifted, *change, *fit.explanation.effects)) or "nominal"
 
 
-def not_testable(exploration: Exploration, conclusion: Conclusion) -> list[NotTestable]:
+def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
     """Effects that could act at a plausible strength without a mark in these recordings."""
     final = conclusion.final
-    seen: dict[str, float] = {}
-    for variant, starts in starts_of(exploration.data, final.model).items():
-        if variant.effect in final.explanation.effects or not variant.free:
-            continue
-        mark = visibility(exploration, final, variant, [dict(start) for start in starts[:4]])
-        seen[variant.effect] = max(seen.get(variant.effect, 0.0), mark)
+    base = found.estimator.restated(final)
+    marks: dict[str, float] = {}
+    for variant, starts in starts_of(found.data, final.model).items():
+        if variant.effect not in final.explanation.effects:
+            mark = largest_mark(found.estimator, base, variant, starts[:4])
+            marks[variant.effect] = max(marks.get(variant.effect, 0.0), mark)
     return [
-        NotTestable(id=effect, why=untestable(mark), record=EFFECT[effect].record)
-        for effect, mark in seen.items()
+        NotTestable(id=effect, why=words.untestable(mark), record=EFFECT[effect].record)
+        for effect, mark in marks.items()
         if mark < SIGNIFICANT
     ]
+
+
+def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
+    """Windows and regimes of the first recording in which the mismatch gathers; none where there is none.
+
+    Windows are where the named effects move the signal, or, where none is named, where the error is.
+    """
+    if conclusion.verdict in ("consistent", "parameter_drift"):
+        return [], []
+    run, final = data.runs[0], conclusion.final
+    motion = motion_of(run, data.actuator, data.noise)
+    residual = run.measured - run.simulated(conclusion.recalibrated.model)
+    mark = residual
+    if final.explanation.variants:
+        bare = final.model.with_values(
+            {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
+        )
+        mark = run.simulated(final.model, final.switch) - run.simulated(bare)
+    found = windows(motion.time, mark**2)
+    return locations(motion, residual, found), regimes(motion, residual)
+
+
+def residual_torque(shape: Shape | None) -> ResidualTorque | None:
+    """What is left as a torque over angle and velocity, and over time."""
+    if shape is None or shape.model.residual_torque is None:
+        return None
+    grid = {key: np.asarray(shape.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    time, torque = shape.over_time
+    return ResidualTorque(
+        **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())
+    )
+
+
+def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
+    """Time [s], measured, duty, and what the three models make of a run, each (samples,)."""
+    place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
+    return {
+        "time": run.time,
+        "measured": run.measured,
+        "duty": run.inputs.duty[place],
+        "nominal": run.simulated(conclusion.nominal.model),
+        "recalibrated": run.simulated(conclusion.recalibrated.model),
+        "final": run.simulated(conclusion.model, conclusion.final.switch),
+    }

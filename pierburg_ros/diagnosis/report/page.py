@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jinja2
 from matplotlib.axes import Axes
@@ -21,10 +21,8 @@ from pierburg_ros.diagnosis.report.figures import (
     thinned,
     torque_figure,
 )
+from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis
-
-if TYPE_CHECKING:
-    from pierburg_ros.diagnosis.diagnose import Result
 
 VERDICTS = {
     "consistent": "the model as described explains the recordings down to their noise",

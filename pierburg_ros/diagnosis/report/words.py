@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
+from pierburg_ros.diagnosis.remainder.shared import LeftOut
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
+from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 
 SEPARATES = {
@@ -40,6 +42,13 @@ def effect_explanation(
     return text
 
 
+def reason(support: Support, unit: str) -> str:
+    """Why an effect is believed; `unit` is the measured one."""
+    if support.left_out is not None:
+        return by_recordings_left_out(support.left_out, unit)
+    return by_grid() if support.gain is None else by_evidence(support.gain)
+
+
 def by_evidence(gain: float) -> str:
     """Why an effect is named that the best explanation needs."""
     return (
@@ -53,11 +62,11 @@ def by_grid() -> str:
     return "All samples lie on this grid, which is coarse beside the noise."
 
 
-def by_recordings_left_out(without: float, beside: float, unit: str, helped: int, parts: int) -> str:
+def by_recordings_left_out(said: LeftOut, unit: str) -> str:
     """Why an effect is named where no explanation accounts for all."""
     return (
-        f"On recordings left out of the fit the error is {without:.3g} {unit} without it and {beside:.3g} {unit} "
-        f"with it; it helps in {helped} of {parts} parts. Other physics may stand behind it."
+        f"On recordings left out of the fit the error is {said.without:.3g} {unit} without it and {said.beside:.3g} "
+        f"{unit} with it; it helps in {said.helped} of {said.parts} parts. Other physics may stand behind it."
     )
 
 
@@ -98,6 +107,12 @@ def summary(
         return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
     helped = f" What helps on recordings left out is {_listed([e.id for e in effects])}. {named}" if effects else ""
     return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
+
+
+def cautioned(limits: Sequence[Limit], text: str) -> str:
+    """The summary, or, where the recordings cannot decide anything, why not."""
+    decisive = [limit.finding for limit in limits if limit.decisive]
+    return f"Nothing can be concluded: {' '.join(decisive)} {text}" if decisive else text
 
 
 def advice(

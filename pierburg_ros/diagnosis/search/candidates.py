@@ -9,8 +9,8 @@ from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.effects import EFFECT, EFFECTS, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.explanation import Explanation, Variant, canonical
 from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant, canonical
 from pierburg_ros.plant import Model
 
 Addition = str | Variant
@@ -26,8 +26,11 @@ def drifting(nominal: Model) -> tuple[str, ...]:
 def possible(actuator: Actuator) -> tuple[Effect, ...]:
     """The effects that can act in an actuator and are searched for."""
     stops = math.isfinite(actuator.lower_stop) or math.isfinite(actuator.upper_stop)
-    kind = ("voltage", actuator.load, actuator.quantity, stops)
-    return tuple(effect for effect in EFFECTS if effect.variants and effect.acts_on(*kind))
+
+    def acts(effect: Effect) -> bool:
+        return effect.acts_on("voltage", actuator.load, actuator.quantity, stops)
+
+    return tuple(effect for effect in EFFECTS if effect.variants and acts(effect))
 
 
 def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.linalg import qr
 
 from pierburg_ros.diagnosis.search.candidates import jumps
-from pierburg_ros.diagnosis.search.refinement import refined
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
 from pierburg_ros.diagnosis.search.selection import EXPLAINED, overlooks
@@ -17,6 +16,7 @@ from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
@@ -42,6 +42,10 @@ class Found:
     estimates: dict[str, Estimate]
     recalibrated: Fit
     exhausted: bool
+
+    def of_size(self, size: int) -> list[Fit]:
+        """The fits of explanations of `size` quantities."""
+        return [fit for fit in self.fits.values() if fit.explanation.size == size]
 
     @property
     def estimator(self) -> Estimator:
@@ -69,9 +73,7 @@ def search(
         chosen = found.preferred()
         final, known = _last_values(found, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
         recalibrated = _recalibrated(found)
-    return Found(
-        found.data, nominal, found.drifts, found.fits, chosen, final, known, recalibrated, found.exhausted
-    )
+    return Found(found.data, nominal, found.drifts, found.fits, chosen, final, known, recalibrated, found.exhausted)
 
 
 def _last_values(found: Search, chosen: Fit) -> tuple[Fit, dict[str, Estimate]]:
@@ -97,6 +99,4 @@ def _recalibrated(found: Search) -> Fit:
     explanation = Explanation(tuple(name for name in found.drifts if name in names))
     drifts = (fit for fit in found.fits.values() if not fit.explanation.variants and not fit.explanation.changed)
     starts = [found.nominal.values, min(drifts, key=lambda fit: fit.chi2).values]
-    return min(
-        found.pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2
-    )
+    return min(found.pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2)

@@ -9,7 +9,6 @@ import numpy as np
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import ABOVE
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.estimation.run import Switch
@@ -105,21 +104,18 @@ def _change(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> 
 def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | None]:
     """The models of `base` with an effect added."""
     own = {f"{variant.effect}.{name}": value for name, value in (*start.items(), *variant.fixed)}
-    model = base.model.with_values(_stacked(base.model, own))
-    if base.switch is None:
-        return model, None
-    return model, Switch(base.switch.model.with_values(_stacked(base.switch.model, own)), base.switch.time)
+
+    def with_effect(model: Model) -> Model:
+        return model.with_values(EFFECT[variant.effect].counted(own, model.values))
+
+    switch = base.switch and Switch(with_effect(base.switch.model), base.switch.time)
+    return with_effect(base.model), switch
 
 
 def _projection(fit: Fit) -> Callable[[Signal], Signal]:
     """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
     basis = np.linalg.qr(fit.solution.jacobian)[0]
     return lambda residual: residual - basis @ (basis.T @ residual)
-
-
-def _stacked(model: Model, own: dict[str, float]) -> dict[str, float]:
-    """`own` values, those counted from a base parameter of `model` put on top of it."""
-    return {name: value + (model.values[ABOVE[name]] if name in ABOVE else 0.0) for name, value in own.items()}
 
 
 def _in_quadrature(starts: Sequence[Start], variant: Variant) -> list[list[Start]]:
@@ -146,4 +142,4 @@ def _scaled(model: Model, variant: Variant, used: Sequence[Start], scale: Signal
             if stride is not None:
                 values[name] *= float(np.clip(scale[0], 1.0 / stride, stride))
     own = {f"{variant.effect}.{name}": value for name, value in values.items()}
-    return {**model.values, **_stacked(model, own)}
+    return {**model.values, **effect.counted(own, model.values)}

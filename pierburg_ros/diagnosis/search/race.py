@@ -100,5 +100,5 @@ def _deserves_whole_fit(look: Look, rank: int, nearest: float) -> bool:
     """On top of what accounts for all, what gains noticeably; otherwise the best few, what is near them, drifts."""
     base = look.prospect.base
     if adequate(base):
-        return base.misfit - look.fit.misfit > PROMISING
+        return bool(base.misfit - look.fit.misfit > PROMISING)
     return rank < FINISHED or look.fit.ratio < NEAR * nearest or not look.fit.explanation.variants

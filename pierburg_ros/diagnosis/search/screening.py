@@ -61,7 +61,7 @@ def screened(
     pool: Executor,
     progress: Callable[[str], None],
 ) -> list[Prospect]:
-    """Every addition to `fit` with its promise: at a `glance`, the first part of the recordings, where that shows it."""
+    """Every addition to `fit` with its promise: at a `glance`, the first part of each run, where that shows it."""
     base = whole.restated(fit)
     brief = glance.restated(base)
     quick = (whole, base) if _shows_late(brief, base) else (glance, brief)

@@ -10,13 +10,13 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.candidates import drifting, jumps
 from pierburg_ros.diagnosis.search.race import winners
-from pierburg_ros.diagnosis.search.refinement import refined
 from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
 from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
+from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]

@@ -19,6 +19,8 @@ which one is out."""
 FORMULATION = 1.15e-4
 """What simulations of one effect may differ by [rad, root mean square], each right in its own way: 0.3 mV of Hall
 voltage, the most that going from steps of 10 us to 5 changes for any effect in the textbook form (`docs/proof.md`)."""
+PROMISING = 15.0
+"""Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up."""
 ADEQUATE = 1.03
 """Training error over noise up to which an explanation accounts for all there is."""
 COMPLETE = 1.01

@@ -1,1 +1,1 @@
-"""What the search amounts to: the verdict, ties, physics that recordings share, the shape of the unknown."""
+"""What a search amounts to: the verdict, how sure each effect is, and what cannot be told apart."""

@@ -11,17 +11,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.estimation.fit import fit
-from pierburg_ros.estimation.problem import COARSE_STEP, Problem
-from pierburg_ros.estimation.scaling import Scaling
+from pierburg_ros.estimation.data import data_of
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.refinement import COARSEST
 from pierburg_ros.identification.experiment.excitation import DUTY_RECIPES, duty_sequence
 from pierburg_ros.identification.experiment.explanations import refitted_names
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.identification.fit import fit
 from pierburg_ros.plant import Model
+from pierburg_ros.signals import Signal
 
-Signal = NDArray[np.float64]
 SEGMENTS = 4
 """Parts of the sequence, each of one recipe."""
 SEEDS = 2
@@ -118,12 +119,13 @@ def _ways(first: Model, second: Model) -> list[tuple[Model, Model]]:
 def linear_separation(first: Model, second: Model, time: Signal, duty: Signal, noise: float) -> float:
     """Estimated separation [noise deviations]: what the slopes of the second's parameters cannot absorb."""
     target = synthetic_recording(first, time, duty, noise=0.0)
-    problem = Problem([target], Scaling.of(second, refitted_names(second)))
-    origin = np.zeros(len(problem.scaling.names))
-    difference, slopes = problem.residual(origin), problem.jacobian(origin, COARSE_STEP)
+    estimator = Estimator(data_of([target], second), second)
+    origin = estimator.at(Explanation(refitted_names(second)))
+    wide = COARSEST * estimator.coordinates(origin.explanation).steps
+    difference, slopes = origin.solution.residual, estimator.slopes(origin, wide)
     lengths = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     absorbed = np.linalg.lstsq(slopes / lengths, difference, rcond=1e-6)[0]
-    return float(np.linalg.norm(difference - slopes / lengths @ absorbed)) / noise
+    return float(np.linalg.norm(difference - slopes / lengths @ absorbed)) * estimator.data.noise / noise
 
 
 def judge(
@@ -136,7 +138,7 @@ def judge(
             [synthetic_recording(truth, time, duty, noise=0.0)],
             refitted_names(other),
             starts=1,
-            simplex=False,
+            refine=False,
         ).rmse
         for truth, other in _ways(first, second)
     )

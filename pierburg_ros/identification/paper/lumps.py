@@ -10,12 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pierburg_ros.estimation.fit import Fit
-from pierburg_ros.estimation.uncertainty import RANK
+from pierburg_ros.estimation.covariance import RANK
+from pierburg_ros.identification.fit import Identified
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
+from pierburg_ros.signals import Signal
 
 UNITS = {"time_constant": "s", "gain": "rad", "preload_angle": "rad", "friction_angle": "rad"}
 DUTY_UNITS = {"D_c": "1", "D_pre": "1"}
@@ -52,38 +52,41 @@ def duties(model: Model) -> dict[str, float]:
     }
 
 
-def fitted_lumps(fitted: Fit) -> dict[str, Lump]:
+def fitted_lumps(fitted: Identified) -> dict[str, Lump]:
     """The lumps of a fit; known even where the parameters behind them are tied."""
     return _derived(fitted, lumps, UNITS)
 
 
-def fitted_duties(fitted: Fit) -> dict[str, Lump]:
+def fitted_duties(fitted: Identified) -> dict[str, Lump]:
     """D_c and D_pre of a fit."""
     return _derived(fitted, duties, DUTY_UNITS)
 
 
-def _derived(fitted: Fit, quantities: Callable[[Model], dict[str, float]], units: dict[str, str]) -> dict[str, Lump]:
+def _derived(
+    fitted: Identified, quantities: Callable[[Model], dict[str, float]], units: dict[str, str]
+) -> dict[str, Lump]:
     """Positive `quantities` of the fitted model, their intervals by the slopes of their logarithms."""
     values, slopes = quantities(fitted.model), _relative_slopes(fitted, quantities)
-    _, lengths, directions = np.linalg.svd(fitted.jacobian, full_matrices=False)
+    _, lengths, directions = np.linalg.svd(fitted.slopes, full_matrices=False)
     unknown = directions[lengths <= RANK * lengths[0]]
     fixed = np.linalg.norm(slopes @ unknown.T, axis=1) < 1e-3
-    variances = np.einsum("ij,jk,ik->i", slopes, fitted.uncertainty.covariance, slopes)
-    widths = np.exp(fitted.uncertainty.factor * np.sqrt(variances))
+    variances = np.einsum("ij,jk,ik->i", slopes, fitted.covariance.matrix, slopes)
+    widths = np.exp(fitted.covariance.factor * np.sqrt(variances))
     return {
         name: Lump(value, units[name], (float(value / width), float(value * width)) if known else None)
         for (name, value), width, known in zip(values.items(), widths, fixed, strict=True)
     }
 
 
-def _relative_slopes(fitted: Fit, quantities: Callable[[Model], dict[str, float]]) -> NDArray[np.float64]:
+def _relative_slopes(fitted: Identified, quantities: Callable[[Model], dict[str, float]]) -> Signal:
     """Derivative of the logarithm of each quantity to the coordinates, shape (quantities, names)."""
-    step = 1e-6
-    rows = []
-    for offset in step * np.eye(len(fitted.names)):
-        ahead, behind = (
-            np.log(list(quantities(fitted.scaling.model(fitted.coordinates + sign * offset)).values()))
-            for sign in (1.0, -1.0)
-        )
-        rows.append((ahead - behind) / (2.0 * step))
-    return np.asarray(np.array(rows).T)
+    step, estimator = 1e-6, fitted.estimator
+    coordinates = estimator.coordinates(fitted.fit.explanation)
+
+    def logarithms(point: Signal) -> Signal:
+        model = estimator.model({**estimator.nominal.values, **coordinates.values(point)})
+        return np.log(list(quantities(model).values()))
+
+    point = fitted.fit.solution.point
+    moves = step * np.eye(point.size)
+    return np.stack([(logarithms(point + move) - logarithms(point - move)) / (2.0 * step) for move in moves], axis=1)

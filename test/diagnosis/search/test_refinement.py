@@ -1,13 +1,13 @@
 """A second look finds the values that a descent over a rough cost has missed."""
 
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
-
 from pierburg_ros.diagnosis.evidence.data import evidence_of
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search.explore import FADING, Exploration
 from pierburg_ros.diagnosis.search.fits import Search
-from pierburg_ros.diagnosis.search.refinement import polished
+from support.recordings import NOMINAL, PIERBURG, recording
+
+from pierburg_ros.estimation.refinement import polished
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 VISCOUS = Variant("viscous_friction", ("coefficient",))

@@ -39,7 +39,10 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
     idle = 0
     for number in range(ROUNDS):
         axes, steps = _axes(estimator, fit), _steps(estimator, fit, coarse=number % 2 == 1)
-        starts = [_lowest(estimator, fit, axes), *(_values(estimator, fit, hop * axes[0]) for hop in HOPS if number > 0)]
+        starts = [
+            _lowest(estimator, fit, axes),
+            *(_values(estimator, fit, hop * axes[0]) for hop in HOPS if number > 0),
+        ]
         starts += _landings(estimator, fit) if number == 0 else []
         descents = [estimator.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)

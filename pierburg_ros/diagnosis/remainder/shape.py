@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData, held_back, rms
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
-from pierburg_ros.diagnosis.evidence.stretches import REMEMBERED, restarted
+from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
+from pierburg_ros.estimation.data import Data, held_back, rms
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.plant import Model
-
-Signal = NDArray[np.float64]
+from pierburg_ros.signals import Signal
 
 ANGLES = 7
 """Nodes over the angle."""
@@ -41,7 +38,7 @@ STRETCHES = 24
 """Into how many stretches of time the missing torque is averaged."""
 
 
-Way = Callable[[EvidenceData], Model]
+Way = Callable[[Data], Model]
 """A way to calibrate the model that the shape stands on, to the training samples."""
 
 
@@ -49,7 +46,7 @@ Way = Callable[[EvidenceData], Model]
 class Shape:
     """A model with its residual torque, and what that gains on samples that did not train it.
 
-    `base` is the model without it. `before` and `after` are RMSE over whole runs on the choosing samples, measured
+    `base` is the model without it. `before` and `after` are RMSE over whole runs on the validation samples, measured
     unit, of the base and of the shaped model. `over_time` holds the middle [s] of each stretch of the first
     recording and the mean torque [N.m] that the base lacks there, not a number at rest.
     """
@@ -62,56 +59,57 @@ class Shape:
     over_time: tuple[Signal, Signal]
 
 
-def fit_shape(data: EvidenceData, ways: Sequence[Way], progress: Callable[[str], None] = lambda _: None) -> Shape:
+def fit_shape(
+    data: Data, ways: Sequence[Way], pool: Executor, progress: Callable[[str], None] = lambda _: None
+) -> Shape:
     """The residual torque over angle and velocity that makes a simulation fit the training samples.
 
     Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held
     back from it, with or without a shape: parameters fitted to whole runs without the missing physics may have
     been bent towards the few standstills that it has displaced.
     """
-    with threadpool_limits(1), ThreadPoolExecutor(2) as pool:
-        way = ways[0]
-        if len(ways) > 1:
-            progress("ways to calibrate the model below a residual torque")
-            errors = list(pool.map(lambda way: _left_out(data, way), ways))
-            way = ways[int(np.argmin(errors))]
-        progress("residual torque over angle and velocity")
-        base = way(data)
-        model = _fitted(data, base)
+    way = ways[0]
+    if len(ways) > 1:
+        progress("ways to calibrate the model below a residual torque")
+        errors = list(pool.map(lambda way: _left_out(data, way), ways))
+        way = ways[int(np.argmin(errors))]
+    progress("residual torque over angle and velocity")
+    base = way(data)
+    model = _fitted(data, base)
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
     words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
-    before, after = (rms(data.residual(m)[data.choosing]) * data.noise for m in (base, model))
+    before, after = (rms(data.residual(m)[data.validation]) * data.noise for m in (base, model))
     return Shape(model, base, before, after, words, over_time)
 
 
-def _left_out(data: EvidenceData, way: Way) -> float:
+def _left_out(data: Data, way: Way) -> float:
     """Error on training blocks held back, of the model that `way` calibrates or of its shaped one, the lower.
 
     The product of the RMSE over whole runs, where a few standstills at the wrong angle can decide, and over
     stretches, which do not see what a model forgets slowly.
     """
     inner = held_back(data)
-    stretches, trained = restarted(data, STRETCH), restarted(inner, STRETCH).training
+    stretches, trained = restarted(data, STRETCH), restarted(inner, STRETCH).train
     base = way(inner)
 
     def error(model: Model) -> float:
-        whole = data.residual(model)[data.training & ~inner.training]
-        short = stretches.residual(model)[stretches.training & ~trained]
-        return math.prod(rms(np.nan_to_num(residual, nan=1e3)) for residual in (whole, short))
+        whole = data.residual(model)[data.train & ~inner.train]
+        short = stretches.residual(model)[stretches.train & ~trained]
+        return math.prod(rms(residual) for residual in (whole, short))
 
     return min(error(base), error(_fitted(inner, base)))
 
 
-def _fitted(data: EvidenceData, base: Model) -> Model:
+def _fitted(data: Data, base: Model) -> Model:
     """`base` with its best shape.
 
     Bilinear between about 7 x 6 nodes, damped Gauss-Newton on the signal simulated in stretches of 1 s, each from
     the measured state, so that a slip at the wrong moment is forgotten after a second. Large errors count by their
     logarithm. A prior keeps the shape small and smooth.
     """
-    stretches = data if REMEMBERED.intersection(base.active_effects) else restarted(data, STRETCH)
-    training = stretches.training
+    stretches = restarted(data, STRETCH) if forgotten(base.active_effects) else data
+    training = stretches.train
     angle, velocity = nodes(data)
     prior = WEIGHT * _prior(angle.size, velocity.size)
 
@@ -120,7 +118,7 @@ def _fitted(data: EvidenceData, base: Model) -> Model:
         return base.with_residual({"angle": angle, "velocity": velocity, "torque": torque})
 
     def error(candidate: Model) -> Signal:
-        return np.nan_to_num(stretches.residual(candidate)[training], nan=1e3, posinf=1e3, neginf=-1e3)
+        return stretches.residual(candidate)[training]
 
     scale = rms(error(base))
 
@@ -134,7 +132,7 @@ def _fitted(data: EvidenceData, base: Model) -> Model:
     return shaped(solution.point)
 
 
-def nodes(data: EvidenceData) -> tuple[Signal, Signal]:
+def nodes(data: Data) -> tuple[Signal, Signal]:
     """Nodes of angle [rad] and velocity [rad/s], placed by how often the data visit them."""
     motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
     angles = np.concatenate([motion.angle[motion.moving] for motion in motions])
@@ -173,7 +171,7 @@ def _prior(angles: int, velocities: int) -> Signal:
     return np.concatenate([np.eye(size) / SPREAD, differences / STEEPNESS])
 
 
-def _over_time(data: EvidenceData, model: Model) -> tuple[Signal, Signal]:
+def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
     """Middle of each stretch of the first run [s] and the mean torque missing there [N.m], nan where at rest."""
     run = data.runs[0]
     missing = missing_torque(data, run, model)

@@ -1,0 +1,29 @@
+"""Ways to calibrate a model that lacks physics: what it lacks bends its parameters, each way otherwise."""
+
+from __future__ import annotations
+
+from pierburg_ros.diagnosis.evidence.stretches import restarted
+from pierburg_ros.diagnosis.remainder.shape import STRETCH, Way
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.plant import Model
+
+
+def recalibrations(nominal: Model, explanation: Explanation) -> list[Way]:
+    """`nominal` as it is; with the parameters of `explanation` fitted to whole runs; to stretches of them; the same
+    with large errors counting by their logarithm."""
+
+    def described(_: Data) -> Model:
+        return nominal
+
+    def whole(data: Data) -> Model:
+        return Estimator(data, nominal).fit(explanation).model
+
+    def stretches(data: Data) -> Model:
+        return Estimator(restarted(data, STRETCH), nominal).fit(explanation).model
+
+    def forgiving(data: Data) -> Model:
+        return Estimator(restarted(data, STRETCH), nominal).fit(explanation, forgiving=True).model
+
+    return [described, whole, stretches, forgiving]

@@ -1,0 +1,52 @@
+"""What can be said where no explanation accounts for all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
+from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
+from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.workers import workers
+
+CONFIRMED = 0.9
+"""Share of the error on validation samples to which a residual torque must bring it to be kept."""
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
+    believed, by id; and the rest as a torque over angle and velocity, None where unseen data do not confirm one."""
+
+    base: Fit
+    estimates: dict[str, Estimate]
+    left_out: Mapping[str, LeftOut]
+    shape: Shape | None
+
+
+def remainder(found: Found, progress: Progress = lambda _: None, jobs: int | None = None) -> Remainder:
+    """Physics beyond one explanation, and the shape of what is left.
+
+    Several recordings can vouch for effects that each lower the error on recordings left out; one recording
+    cannot. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
+    """
+    data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
+    with workers(jobs) as pool:
+        if len(data.runs) > 1:
+            fit, left_out = shared_effects(found, pool, progress)
+            base = estimator.restated(fit)
+            shape = fit_shape(data, [lambda _: base.model], pool, progress)
+        else:
+            explanation, left_out = recalibrated.explanation, {}
+            shape = fit_shape(data, recalibrations(found.nominal, explanation), pool, progress)
+            drifted = Explanation() if shape.base is found.nominal else explanation
+            base = estimator.at(drifted, shape.base.values)
+        known = estimates(estimator, base, pool.map)
+    confirmed = shape.after < CONFIRMED * shape.before
+    return Remainder(base, known, left_out, shape if confirmed else None)
