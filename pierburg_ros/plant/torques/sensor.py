@@ -14,20 +14,22 @@ SPAN = math.pi / 2
 @kernel
 def follow(p, s, duration):
     """Let the moving parts of the sensor follow the shaft, which has gone one way for `duration` [s]."""
-    start = s.magnet
-    s.magnet = sensor_hysteresis.dragged(p.sensor_hysteresis, start, s.angle)
+    start = s.sensor_hysteresis.magnet
+    s.sensor_hysteresis.magnet = sensor_hysteresis.dragged(p.sensor_hysteresis, start, s.angle)
     moving = duration
-    if p.sensor_hysteresis.width != 0.0 and s.magnet != start:
-        moving = duration * min(abs(s.magnet - start) / max(abs(s.angle - s.followed), 1e-300), 1.0)
-    lagged = sensor_lag.followed(p.sensor_lag, s.lagged, start, start, duration - moving)
-    s.lagged = sensor_lag.followed(p.sensor_lag, lagged, start, s.magnet, moving)
-    s.followed = s.angle
+    if p.sensor_hysteresis.width != 0.0 and s.sensor_hysteresis.magnet != start:
+        moving = duration * min(
+            abs(s.sensor_hysteresis.magnet - start) / max(abs(s.angle - s.sensor_hysteresis.followed), 1e-300), 1.0
+        )
+    lagged = sensor_lag.followed(p.sensor_lag, s.sensor_lag.lagged, start, start, duration - moving)
+    s.sensor_lag.lagged = sensor_lag.followed(p.sensor_lag, lagged, start, s.sensor_hysteresis.magnet, moving)
+    s.sensor_hysteresis.followed = s.angle
 
 
 @kernel
 def measured(p, s):
     """Measured quantity before noise and converter: Hall voltage [V], or angle [rad] where that is measured."""
-    angle = s.lagged if p.sensor_moves else s.angle
+    angle = s.sensor_lag.lagged if p.sensor_moves else s.angle
     fraction = sensor_nonlinearity.bent(p.sensor_nonlinearity, angle / SPAN)
     if p.measures_position:
         return fraction * SPAN
