@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import Start, scale_of
+from pierburg_ros.estimation.start import Start
 from pierburg_ros.plant import Inputs, Model, simulate_many
+from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -54,12 +55,12 @@ class Resimulation:
         self.start = Start.of(recording.time, recording.measured)
         self.inputs = inputs_in_force(recording, self.start, actuator)
         self._decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
-        self._nominal_scale = scale_of(Model.nominal(actuator), actuator.quantity)
+        self._nominal = Model.nominal(actuator)
 
     def simulated(self, models: Sequence[Model], threads: int | None = None) -> Signal:
         """What each of `models` would have measured, in the recording's unit, shape (models, samples).
 
-        A position recorded from a Hall sensor is its voltage decoded with the nominal ends.
+        A position recorded from a Hall sensor is its voltage decoded by the nominal sensor.
         """
         quantity, times = self.recording.quantity, self.recording.time
         states = [self.start.state(model, quantity) for model in models]
@@ -69,8 +70,7 @@ class Resimulation:
             group = [models[index] for index in chosen]
             output[chosen] = simulate_many(group, self.inputs, times, *state, threads=threads)
         if self._decodes:
-            closed, per_radian = self._nominal_scale
-            output = (output - closed) / per_radian
+            return decoded(self._nominal, output)
         return output
 
 

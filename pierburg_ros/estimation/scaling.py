@@ -9,11 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import DECLARED
+from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.plant import Model
 
 Vector = NDArray[np.float64]
-BREAKAWAY, COULOMB = "static_friction.breakaway_torque", "coulomb_friction"
+ABOVE = {name: parameter.above for name, parameter in DECLARED.items() if parameter.above is not None}
+"""Parameters that are counted from another one."""
 WIDEST_FACTOR = 20.0
 """A positive parameter is searched within this factor of its start."""
 
@@ -24,7 +26,7 @@ class Scaling:
 
     A positive parameter is start exp(coordinate), so that a step is a relative change; one whose start is 0
     or negative, or whose range reaches below 0, is start + width coordinate, width a tenth of its plausible
-    range. The breakaway torque is counted from Coulomb friction, which it can never be below.
+    range. What stays above a base parameter is counted from it.
     """
 
     base: Model
@@ -43,17 +45,17 @@ class Scaling:
 
     @property
     def start(self) -> Vector:
-        """What the coordinates scale at their start: the values in `base`, breakaway torque from Coulomb."""
+        """What the coordinates scale at their start: the values in `base`, or what exceeds another one."""
         return np.array([_own_value(self.base, name) for name in self.names], dtype=float)
 
     def values(self, coordinates: Vector) -> Vector:
         """Parameter values at `coordinates`."""
         grown = self.start * np.exp(np.where(self.relative, coordinates, 0.0))
         values = np.where(self.relative, grown, self.start + self.width * coordinates)
-        if BREAKAWAY in self.names:
-            place = self.names.index(COULOMB) if COULOMB in self.names else None
-            coulomb = self.base.values[COULOMB] if place is None else values[place]
-            values[self.names.index(BREAKAWAY)] += coulomb
+        for place, name in enumerate(self.names):
+            if name in ABOVE:
+                base = ABOVE[name]
+                values[place] += values[self.names.index(base)] if base in self.names else self.base.values[base]
         return np.asarray(values)
 
     def slope(self, coordinates: Vector) -> Vector:
@@ -73,7 +75,7 @@ class Scaling:
 
 def _own_value(base: Model, name: str) -> float:
     value = base.values[name]
-    return max(value - base.values[COULOMB], 0.0) if name == BREAKAWAY else value
+    return max(value - base.values[ABOVE[name]], 0.0) if name in ABOVE else value
 
 
 def _coordinate(base: Model, name: str) -> tuple[bool, float, float, float]:
@@ -89,16 +91,16 @@ def _coordinate(base: Model, name: str) -> tuple[bool, float, float, float]:
 def _width(name: str, value: float, span: float) -> float:
     """A tenth of the plausible range of an effect's parameter, or of a base parameter's magnitude."""
     if "." in name:
-        effect, own = name.split(".")
-        low, high = EFFECT[effect].parameter(own).plausible
+        low, high = DECLARED[name].plausible
         return 0.1 * max(high - low, abs(value)) or 1e-3 * span
     return 0.1 * abs(value) or 1e-3 * span
 
 
 def _within_pairs(values: dict[str, float], changes: dict[str, float]) -> dict[str, float]:
-    """`changes` with a breakaway torque no lower than Coulomb friction and a source resistance below R."""
-    if values[BREAKAWAY] != 0.0 and values[BREAKAWAY] < values[COULOMB]:
-        changes[BREAKAWAY] = values[COULOMB]
-    if values["supply_sag.source_resistance"] >= values["armature_resistance"]:
-        changes["supply_sag.source_resistance"] = 0.95 * values["armature_resistance"]
+    """`changes` with what has to stay above or below a base parameter moved there."""
+    for name, parameter in DECLARED.items():
+        if parameter.above is not None and values[name] != 0.0 and values[name] < values[parameter.above]:
+            changes[name] = values[parameter.above]
+        if parameter.below is not None and values[name] != 0.0 and values[name] >= values[parameter.below]:
+            changes[name] = HIGHEST_SHARE * values[parameter.below]
     return changes

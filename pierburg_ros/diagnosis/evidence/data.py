@@ -14,6 +14,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.resimulation import inputs_in_force
 from pierburg_ros.estimation.start import Start, from_standstill
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
+from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
@@ -107,11 +108,7 @@ class EvidenceData:
     @property
     def angle_per_unit(self) -> float:
         """Angle of one unit of the measured quantity [rad/V], or 1 where the angle itself is measured."""
-        if self.actuator.quantity == "position":
-            return 1.0
-        nominal = self.actuator.parameters
-        span = nominal["hall_voltage_open"].nominal - nominal["hall_voltage_closed"].nominal
-        return float(np.pi / 2 / span)
+        return angle_per_unit(Model.nominal(self.actuator))
 
     @property
     def training(self) -> NDArray[np.bool_]:

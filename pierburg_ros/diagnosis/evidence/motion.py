@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.evidence.data import Run
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import angle_per_unit, decoded
 
 Signal = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -88,7 +90,8 @@ class Motion:
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
-    angle, per_unit = angle_of(run.measured, actuator)
+    nominal = Model.nominal(actuator)
+    angle, per_unit = decoded(nominal, run.measured), abs(angle_per_unit(nominal))
     interval = float(np.median(np.diff(run.time)))
     half = max(HALF_WINDOW, 2.0 * interval)
     spread = noise * per_unit
@@ -108,15 +111,6 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
         open=angle >= actuator.upper_stop - near,
         actuator=actuator,
     )
-
-
-def angle_of(measured: Signal, actuator: Actuator) -> tuple[Signal, float]:
-    """Angle [rad] that the nominal sensor reads, and rad per measured unit."""
-    if actuator.quantity == "position":
-        return measured, 1.0
-    closed, opened = (actuator.parameters[f"hall_voltage_{end}"].nominal for end in ("closed", "open"))
-    per_volt = math.pi / 2.0 / (opened - closed)
-    return (measured - closed) * per_volt, abs(per_volt)
 
 
 def slope(time: Signal, values: Signal, half: float) -> Signal:

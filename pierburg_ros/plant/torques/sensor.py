@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from pierburg_ros.effects import sensor_hysteresis, sensor_lag, sensor_nonlinearity, sensor_quantization
 from pierburg_ros.kernel import kernel
 
@@ -34,6 +36,36 @@ def measured(p, s):
     if p.measures_position:
         return fraction * SPAN
     return p.hall_voltage_closed + (p.hall_voltage_open - p.hall_voltage_closed) * fraction
+
+
+@kernel
+def decode(p, value, is_angle):
+    """Angle [rad] that a measured `value` shows: a Hall voltage [V], or an angle [rad] as the sensor gives it."""
+    indicated = value if is_angle else (value - p.hall_voltage_closed) / per_radian(p)
+    if p.sensor_nonlinearity.amplitude == 0.0:
+        return indicated
+    return sensor_nonlinearity.unbent(p.sensor_nonlinearity, indicated / SPAN) * SPAN
+
+
+@kernel
+def decode_all(p, values, is_angle):
+    """`decode` of each of `values`, shape (values,)."""
+    angles = np.empty(values.size)
+    for index in range(values.size):
+        angles[index] = decode(p, values[index], is_angle)
+    return angles
+
+
+@kernel
+def sensitivity(p, angle, is_angle):
+    """Change of the measured value at `angle` [rad] per rad."""
+    return (1.0 if is_angle else per_radian(p)) * sensor_nonlinearity.slope(p.sensor_nonlinearity, angle / SPAN)
+
+
+@kernel
+def per_radian(p):
+    """Mean change of the Hall voltage over the span [V/rad]."""
+    return (p.hall_voltage_open - p.hall_voltage_closed) / SPAN
 
 
 @kernel
