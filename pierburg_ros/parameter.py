@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 
 from pierburg_ros.errors import InputError
 
@@ -48,8 +49,8 @@ class Parameter:
         """`value` in the declared type; InputError where its type or range is another. `name`: as people know it."""
         label = name or self.name
         expected = float if self.default is None else type(self.default)
-        if expected is float and type(value) is int:
-            value = float(value) if abs(value) < 2**1000 else math.inf
+        if expected is float and isinstance(value, Real) and not isinstance(value, bool):
+            value = float(value) if abs(value) < 2**1000 else math.copysign(math.inf, value)
         if expected is list and isinstance(value, tuple):
             value = list(value)
         texts = not isinstance(value, list) or all(isinstance(each, str) for each in value)

@@ -7,15 +7,15 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "pierburg_ros"
-BASE = {"errors", "kernel", "processes"}
 ALLOWED = {
     "errors": set(),
     "kernel": set(),
+    "parameter": {"errors"},
     "processes": {"errors"},
-    "effects": {"errors", "kernel"},
-    "actuators": {"errors", "kernel", "effects"},
-    "plant": {"errors", "kernel", "effects", "actuators"},
-    "control": {"errors", "kernel"},
+    "effects": {"errors", "kernel", "parameter"},
+    "actuators": {"errors", "kernel", "parameter", "effects"},
+    "plant": {"errors", "kernel", "parameter", "effects", "actuators"},
+    "control": {"errors", "kernel", "parameter"},
     "recording": {"errors", "kernel"},
 }
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import resources
 from pathlib import Path
 from typing import Annotated
 
@@ -28,8 +29,8 @@ SETPOINTS = (
     (19.0, 0.17), (21.0, 0.24), (23.0, 1.4), (26.0, 0.0), (28.0, 0.0),
 )  # fmt: skip
 """Time [s] and setpoint [rad]: steps of 4 to 80 degrees both ways."""
-CONCEALED = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1, "spring_preload": 0.31}
-"""What the plant of the second run has and the model does not: stiction [N.m, rad/s], and a drifted spring [N.m]."""
+CONCEALED = Path(str(resources.files("pierburg_ros.cli") / "demo.yaml"))
+"""Model file of the second run's plant: what it has and the diagnosis is not told."""
 NOISE = 0.003
 """Standard deviation of the simulated sensor's noise [V]; guess, 1.5 steps of a 12-bit converter."""
 REAL_RUNS = Path("../shared/data/xl330")
@@ -49,7 +50,11 @@ def demo(
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
         console.print(replayed(folder, recording, Model.nominal(read_actuator("pierburg"))))
-        console.print(diagnosed(folder / "diagnosis", recorded_run(folder, "concealed.mcap", CONCEALED, True, console)))
+        console.print(
+            diagnosed(
+                folder / "diagnosis", recorded_run(folder, "concealed.mcap", {"model": str(CONCEALED)}, True, console)
+            )
+        )
         runs = sorted(real.glob("*.mcap"))
         if runs:
             console.print(replayed_bench(folder / "xl330", runs))
@@ -58,10 +63,12 @@ def demo(
     console.print(f"Results in {output}: replay.html (the loop), diagnosis/report.html (the concealed effect).")
 
 
-def recorded_run(folder: Path, name: str, physics: Mapping[str, float], simulated_time: bool, console: Console) -> Path:
+def recorded_run(
+    folder: Path, name: str, physics: Mapping[str, object], simulated_time: bool, console: Console
+) -> Path:
     """The recording of a closed loop: plant, controller and recorder as processes, setpoints sent from outside.
 
-    `physics` are values of the plant's parameters that differ from the nominal ones. In simulated time plant and
+    `physics` are parameters of the plant's node that differ from their defaults. In simulated time plant and
     controller wait for each other, so that a busy machine loses no tick.
     """
     setpoints, recording = folder / "setpoints.csv", folder / name

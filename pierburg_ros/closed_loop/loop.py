@@ -18,7 +18,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.signal_path import advance
-from pierburg_ros.plant.state import new_state, place
+from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.sensor import measured, quantised
 
 Signal = NDArray[np.float64]
@@ -80,9 +80,9 @@ def simulate_laps(
     ticks["setpoint"] = setpoint
     ticks["noise"] = noise * np.random.default_rng(seed).standard_normal(setpoint.shape)
     record = model.record()
-    plant = new_state(record, initial_angle)
+    plants = np.repeat(new_state(record, initial_angle), len(ticks))
     close = close_linear if control is linear else close_piflc
-    close(record[0], plant[0], settings.record(), law.new_state(), ticks, 1.0 / rate, initial_angle)
+    close(record[0], plants, settings.record(), law.new_state(), ticks, 1.0 / rate)
     if not np.all(np.isfinite(ticks["angle"])):
         raise InputError("The model cannot be simulated with these values; bring them closer to nominal.")
     time = np.arange(setpoint.shape[1]) / rate
@@ -90,28 +90,24 @@ def simulate_laps(
 
 
 @kernel
-def close_piflc(
-    parameters: Any, plant: Any, settings: Any, state: Any, laps: Any, period: float, initial_angle: float
-) -> None:
+def close_piflc(parameters: Any, plants: Any, settings: Any, state: Any, laps: Any, period: float) -> None:
     """Run the PIFLC against the plant through the ticks of each lap, `period` [s] apart."""
-    for lap in laps:
-        place(parameters, plant, initial_angle, 0.0)
+    for number in range(laps.shape[0]):
+        plant = plants[number]
         law.forget(state)
-        for tick in lap:
+        for tick in laps[number]:
             sample(parameters, plant, state, tick)
             law.step(settings, state, tick.setpoint, tick.hall_voltage, period)
             advance(parameters, plant, tick.duty, np.nan, True, period)
 
 
 @kernel
-def close_linear(
-    parameters: Any, plant: Any, settings: Any, state: Any, laps: Any, period: float, initial_angle: float
-) -> None:
+def close_linear(parameters: Any, plants: Any, settings: Any, state: Any, laps: Any, period: float) -> None:
     """Run a PI or PID instead (a kernel that took the law as an argument could not be cached on disk)."""
-    for lap in laps:
-        place(parameters, plant, initial_angle, 0.0)
+    for number in range(laps.shape[0]):
+        plant = plants[number]
         law.forget(state)
-        for tick in lap:
+        for tick in laps[number]:
             sample(parameters, plant, state, tick)
             linear.step(settings, state, tick.setpoint, tick.hall_voltage, period)
             advance(parameters, plant, tick.duty, np.nan, True, period)

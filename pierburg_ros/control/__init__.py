@@ -4,7 +4,7 @@ from pierburg_ros.control.parameter_file import parameter_file, read_parameter_f
 from pierburg_ros.control.piflc import Controller, Internals
 from pierburg_ros.control.schedule import Schedule, read_duty_file, read_setpoint_file
 from pierburg_ros.control.setpoints import Setpoints
-from pierburg_ros.control.settings import SETTINGS, Setting, Settings
+from pierburg_ros.control.settings import SETTINGS, Settings
 
 __all__ = [
     "SETTINGS",
@@ -12,7 +12,6 @@ __all__ = [
     "Internals",
     "Schedule",
     "Setpoints",
-    "Setting",
     "Settings",
     "parameter_file",
     "read_duty_file",

@@ -14,18 +14,7 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.errors import InputError
-
-
-@dataclass(frozen=True)
-class Setting:
-    """One parameter of the controller, as a person or a ROS descriptor sees it."""
-
-    name: str
-    unit: str
-    default: float
-    minimum: float
-    maximum: float
-    meaning: str
+from pierburg_ros.parameter import Parameter
 
 
 def declared(default: float, unit: str, minimum: float, maximum: float, meaning: str) -> Any:
@@ -68,7 +57,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         for setting in SETTINGS:
-            check(setting, getattr(self, setting.name))
+            setting.accepted(getattr(self, setting.name))
         centres = [self.negative_big, self.negative, self.zero, self.positive, self.positive_big]
         if sorted(set(centres)) != centres:
             raise InputError(f"The output sets NB, N, Z, P, PB lie at {centres}; give them in rising order.")
@@ -90,15 +79,6 @@ class Settings:
         return np.rec.array([values], dtype=[(each.name, np.float64) for each in fields(self)])[0]
 
 
-def check(setting: Setting, value: float) -> None:
-    """Refuse a value that is not a finite number within the range of its setting."""
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not (number and setting.minimum <= value <= setting.maximum):
-        span = f"from {setting.minimum:g} to {setting.maximum:g} [{setting.unit}]"
-        raise InputError(f"{setting.name} = {value} is not accepted; give a number {span}.")
-
-
-SETTINGS: tuple[Setting, ...] = tuple(
-    Setting(each.name, default=float(each.default), **each.metadata)  # type: ignore[arg-type]
-    for each in fields(Settings)
-)
+SETTINGS: tuple[Parameter, ...] = tuple(
+    Parameter(each.name, float(each.default), **each.metadata) for each in fields(Settings)
+)  # type: ignore[arg-type]

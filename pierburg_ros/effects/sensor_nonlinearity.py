@@ -5,6 +5,9 @@ import math
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
+HALVINGS = 52
+"""Halvings after which an interval of at most 0.6 spans is as small as rounding."""
+
 EFFECT = Effect(
     id="sensor_nonlinearity",
     stage="sensor",
@@ -52,3 +55,22 @@ def bent(p, fraction):
     if p.amplitude == 0.0:
         return fraction
     return fraction + p.amplitude * math.sin(p.half_waves * math.pi * fraction)
+
+
+@kernel
+def slope(p, fraction):
+    """Derivative of `bent`: how much steeper the characteristic is than a straight one."""
+    return 1.0 + p.amplitude * p.half_waves * math.pi * math.cos(p.half_waves * math.pi * fraction)
+
+
+@kernel
+def unbent(p, indicated):
+    """True fraction of the span that shows as `indicated`, by bisection; one of them where several do."""
+    low, high = indicated - abs(p.amplitude), indicated + abs(p.amplitude)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if bent(p, middle) < indicated:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

@@ -11,8 +11,8 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, run_of
-from pierburg_ros.estimation.start import scale_of
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.signals import Flags, Signal
@@ -59,7 +59,7 @@ class Data:
     @property
     def angle_per_unit(self) -> float:
         """Angle of one unit of the measured quantity [rad/V], or 1 where the angle itself is measured."""
-        return 1.0 / scale_of(Model.nominal(self.actuator), self.runs[0].quantity)[1]
+        return angle_per_unit(Model.nominal(self.actuator))
 
     def cut(self, duration: float) -> Data:
         """The first `duration` [s] of each run."""

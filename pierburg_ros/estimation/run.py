@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import Start, from_standstill, scale_of
+from pierburg_ros.estimation.start import Start, from_standstill
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
+from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 from pierburg_ros.signals import Flags, Signal
 
@@ -27,8 +28,8 @@ class Run:
 
     `time` [s] and `measured` (in the recording's unit), shape (samples,); `start` is what the first samples say.
     `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
-    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoded`: volts at angle 0 and per
-    rad by which a Hall voltage was turned into the recorded position, None where it was not.
+    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
+    model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
     """
 
     name: str
@@ -39,7 +40,7 @@ class Run:
     start: Start
     train: Flags
     validation: Flags
-    decoded: tuple[float, float] | None = None
+    decoder: Model | None = None
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -51,10 +52,7 @@ class Run:
             output = simulate(model, self.inputs, self.time, *start)
         else:
             output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
-        if self.decoded is None:
-            return output
-        closed, per_radian = self.decoded
-        return (output - closed) / per_radian
+        return output if self.decoder is None else decoded(self.decoder, output)
 
     def cut(self, duration: float) -> Run:
         """The first `duration` [s] of the run."""
@@ -95,7 +93,7 @@ def run_of(recording: Recording, model: Model) -> Run:
         start,
         np.ones(recording.time.size, dtype=bool),
         np.zeros(recording.time.size, dtype=bool),
-        scale_of(Model.nominal(actuator), "hall_voltage") if decodes else None,
+        Model.nominal(actuator) if decodes else None,
     )
 
 

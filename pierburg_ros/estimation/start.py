@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import decoded, sensitivity
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
 Signal = NDArray[np.float64]
-RIGHT_ANGLE = math.pi / 2
 
 LONGEST = 250
 """Most samples at the start of a recording that say where the shaft stood."""
@@ -64,8 +63,8 @@ class Start:
 
     def state(self, model: Model, quantity: str) -> tuple[float, float]:
         """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
-        closed, per_radian = scale_of(model, quantity)
-        angle = _unbent(model, (self.level - closed) / per_radian)
+        angle = float(decoded(model, self.level, quantity))
+        per_radian = sensitivity(model, angle, quantity)
         margin = 3.0 * self.noise / abs(per_radian)
         lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
         if angle <= lower + margin:
@@ -92,23 +91,6 @@ def from_standstill(recording: Recording, nominal: Model) -> Recording:
         return recording
     sample = int(np.argmax(lasting)) + EVEN // 2
     return replace(recording, time=recording.time[sample:], measured=recording.measured[sample:])
-
-
-def scale_of(model: Model, quantity: str) -> tuple[float, float]:
-    """Measured value at angle 0 and its change per rad, for a recorded `quantity`."""
-    if quantity == "position":
-        return 0.0, 1.0
-    closed, opened = model.values["hall_voltage_closed"], model.values["hall_voltage_open"]
-    return closed, (opened - closed) / RIGHT_ANGLE
-
-
-def _unbent(model: Model, indicated: float) -> float:
-    """Angle [rad] that a bent sensor characteristic shows as `indicated` [rad]."""
-    amplitude, waves = (model.values[f"sensor_nonlinearity.{name}"] for name in ("amplitude", "half_waves"))
-    angle = indicated
-    for _ in range(20 if amplitude else 0):
-        angle = indicated - RIGHT_ANGLE * amplitude * math.sin(2.0 * waves * angle)
-    return angle
 
 
 def _stays(measured: Signal, noise: float) -> int:

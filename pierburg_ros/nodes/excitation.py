@@ -10,10 +10,10 @@ from std_msgs.msg import Float64
 from pierburg_ros.control import Schedule, read_duty_file, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.core.declaration import Declaration
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED, SIGNALS
 from pierburg_ros.nodes.running import run
+from pierburg_ros.parameter import Parameter as Declaration
 
 EXCITATION = (
     Declaration("duty_file", "", "CSV of time [s] and duty to play instead of a controller", fixed=True),

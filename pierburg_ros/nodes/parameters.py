@@ -18,9 +18,10 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.core.declaration import Declaration, Value
 from pierburg_ros.nodes.diagnostics import Diagnostics
 from pierburg_ros.nodes.qos import COMMANDS
+from pierburg_ros.parameter import Parameter as Declaration
+from pierburg_ros.parameter import Value
 
 _OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.bel
 
 @dataclass(frozen=True)
 class Model:
-    """Flat `values` by dotted name (`armature_resistance`, `backlash.gap`), complete: absent effects read 0."""
+    """Flat `values` by dotted name (`armature_resistance`, `effect.parameter`), complete: absent effects read 0."""
 
     actuator: Actuator
     values: dict[str, float]
@@ -82,10 +83,9 @@ class Model:
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)
         declared = self.actuator.parameters[name] if name in self.actuator.parameters else DECLARED[name]
-        number = float(value) if isinstance(value, (np.floating, np.integer)) else value
-        absent = type(number) in (int, float) and number == 0.0 and minimum <= 0.0
+        absent = isinstance(value, Real) and not isinstance(value, bool) and value == 0.0 and minimum <= 0.0
         if not absent:
-            replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(number, name)
+            replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(value, name)
 
     def _check_pairs(self) -> None:
         for name, declared in PAIRS.items():

@@ -1,4 +1,4 @@
-"""The parameter record: every number of the plant in one nested NumPy record, read as `p.backlash.gap`."""
+"""The parameter record: every number of the plant in one nested NumPy record, read as `p.effect.parameter`."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def _act(p, s, duty, supply, closed_bridge, duration):
         s.time += duration
         return
     stretches = 1
-    if p.sensor_moves or p.thermal_resistance.thermal_resistance != 0.0:
+    if p.creeps:
         stretches = max(math.ceil(duration / LONGEST - 1e-6), 1)
     for _ in range(stretches):
         drive.switch(p, s, duty, supply, closed_bridge)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from pierburg_ros.effects import EFFECTS
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import level
 
@@ -28,6 +29,7 @@ PIECE = np.dtype(
     align=True,
 )
 
+_REMEMBERED = [(effect.id, [(name, np.float64) for name in effect.state]) for effect in EFFECTS if effect.state]
 STATE = np.dtype(
     [
         ("time", np.float64),  # s, as loads and samples count it
@@ -39,12 +41,6 @@ STATE = np.dtype(
         ("motor_direction", np.float64),
         ("flank", np.int64),  # touching: +1 the opening one, -1 the closing one, 0 none
         ("current", np.float64),  # A
-        ("bristle", np.float64),  # rad, of the friction contact, at the shaft where the teeth have parted
-        ("motor_bristle", np.float64),  # rad
-        ("rise", np.float64),  # K, of the winding
-        ("magnet", np.float64),  # rad, behind the play of the sensor
-        ("lagged", np.float64),  # rad, behind the lag of the sensor
-        ("followed", np.float64),  # rad, of the shaft when the sensor last followed it
         ("duty", np.float64),  # in force at the motor, before the dead band
         ("supply", np.float64),  # V
         ("closed_bridge", np.bool_),
@@ -61,9 +57,11 @@ STATE = np.dtype(
         ("first", np.int64),
         ("queue_time", np.float64, (QUEUE,)),  # s
         ("queue_duty", np.float64, (QUEUE,)),
+        *_REMEMBERED,
     ],
     align=True,
 )
+"""What a plant remembers; `s.<effect>.<name>` are the states that effects declare, all 0 at the start."""
 
 
 def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> np.ndarray:
@@ -75,27 +73,20 @@ def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> 
 
 @kernel
 def place(p, s, angle, velocity):
-    """Put the actuator at `angle` [rad] with `velocity` [rad/s], transmission and sensor relaxed, cold.
+    """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission and sensor relaxed; `s` is all zeros.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them.
     """
     if p.stop_compliance.stiffness == 0.0:
         angle = min(max(angle, p.lower_stop), p.upper_stop)
-    s.time = 0.0
-    s.angle = s.motor_angle = s.magnet = s.lagged = s.followed = angle
+    s.angle = s.motor_angle = angle
+    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = s.sensor_lag.lagged = angle
     s.velocity = s.motor_velocity = velocity
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1
-    s.current = s.bristle = s.rise = s.duty = 0.0
     s.supply = np.nan
     s.closed_bridge = True
-    s.serial = 0
-    s.steady = False
-    s.voltage = s.drive = 0.0
-    s.resistance = s.braking = 0.0
     s.step = 1.0
-    s.piece.order = 0
-    s.waiting = s.first = 0
     if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
-        s.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
-    s.motor_bristle = s.bristle
+        s.presliding.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
+    s.presliding.motor_bristle = s.presliding.bristle

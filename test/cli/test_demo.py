@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
 from pierburg_ros.cli.demo import CONCEALED, NOISE, write_setpoints
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import read_model
 
 
 def run(*arguments: object) -> None:
@@ -20,10 +19,9 @@ def run(*arguments: object) -> None:
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
     """The concealed valve under the controller, with the demo's setpoints and noise."""
-    model, setpoints = tmp_path / "model.yaml", tmp_path / "setpoints.csv"
-    Model.nominal(read_actuator("pierburg")).with_values(CONCEALED).write(model)
+    setpoints = tmp_path / "setpoints.csv"
     write_setpoints(setpoints)
-    run("simulate", "--model", model, "--setpoints", setpoints, "--noise", NOISE, "--output", tmp_path / "run")
+    run("simulate", "--model", CONCEALED, "--setpoints", setpoints, "--noise", NOISE, "--output", tmp_path / "run")
     return tmp_path / "run/simulated.mcap"
 
 
@@ -34,4 +32,4 @@ def test_the_concealed_effect_is_named_alone_beside_the_drift(recording: Path, t
     assert [effect["id"] for effect in found["effects"]] == ["static_friction"]
     assert [name for name, value in found["parameters"].items() if value["drifted"]] == ["spring_preload"]
     torque = found["effects"][0]["parameters"]["breakaway_torque"]["value"]
-    assert torque == pytest.approx(CONCEALED["static_friction.breakaway_torque"], rel=0.03)
+    assert torque == pytest.approx(read_model(CONCEALED).values["static_friction.breakaway_torque"], rel=0.03)

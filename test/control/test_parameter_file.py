@@ -47,7 +47,7 @@ def test_passes_over_what_belongs_to_the_node(tmp_path):
         ("controller: 3", "has no section controller: ros__parameters"),
         ("a: [", "cannot be read as a parameter file"),
         ("controller: {ros__parameters: {gain: 3.0}}", "no setting 'gain'"),
-        ("controller: {ros__parameters: {zero: fast}}", "zero = fast is not accepted"),
+        ("controller: {ros__parameters: {zero: fast}}", "zero is 'fast'; expected a number"),
     ],
 )
 def test_says_what_is_wrong_with_a_file(tmp_path, text, reason):

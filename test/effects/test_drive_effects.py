@@ -43,7 +43,7 @@ def test_blocked_motor_heats_as_the_equation_says() -> None:
         advance(record[0], state[0], 0.8, np.nan, True, 0.002)
     assert state["angle"][0] == math.pi / 2
     assert expected > 100.0
-    assert state["rise"][0] == pytest.approx(expected, rel=1e-3)
+    assert state["thermal_resistance"]["rise"][0] == pytest.approx(expected, rel=1e-3)
 
 
 def test_current_of_a_blocked_motor_rises_exponentially() -> None:

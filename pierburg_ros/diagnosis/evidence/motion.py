@@ -9,8 +9,8 @@ import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.estimation.run import Run
-from pierburg_ros.estimation.start import scale_of
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import angle_per_unit, decoded
 from pierburg_ros.signals import Flags, Signal
 
 HALF_WINDOW = 0.02
@@ -89,8 +89,8 @@ class Motion:
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
-    closed, per_radian = scale_of(Model.nominal(actuator), run.quantity)
-    angle, per_unit = (run.measured - closed) / per_radian, 1.0 / per_radian
+    nominal = Model.nominal(actuator)
+    angle, per_unit = decoded(nominal, run.measured, run.quantity), angle_per_unit(nominal)
     interval = float(np.median(np.diff(run.time)))
     half = max(HALF_WINDOW, 2.0 * interval)
     spread = noise * abs(per_unit)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.estimation.start import scale_of
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
@@ -51,9 +51,8 @@ class Settled:
 
 
 def angle_of(recording: Recording, actuator: Actuator) -> Signal:
-    """Measured shaft angle [rad], decoded with the nominal Hall end voltages, shape (samples,)."""
-    offset, per_radian = scale_of(Model.nominal(actuator), recording.quantity)
-    return np.asarray((recording.measured - offset) / per_radian)
+    """Measured shaft angle [rad], decoded by the nominal sensor, shape (samples,)."""
+    return decoded(Model.nominal(actuator), recording.measured, recording.quantity)
 
 
 def holds(recording: Recording, actuator: Actuator) -> list[Hold]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pierburg_ros.control import SETTINGS
-from pierburg_ros.nodes.core.declaration import Declaration
+from pierburg_ros.parameter import Parameter as Declaration
 
 CONTROLLER = (
     Declaration("setpoint", 0.0, "wanted shaft angle, as if sent on the topic setpoints", "rad", -100.0, 100.0),

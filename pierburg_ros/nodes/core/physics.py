@@ -8,7 +8,7 @@ from typing import Protocol
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.core.declaration import Declaration
+from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.plant import Model, Plant, read_model
 
 

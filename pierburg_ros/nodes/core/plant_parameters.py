@@ -1,6 +1,6 @@
 """Parameters of the plant node beside those of the physics."""
 
-from pierburg_ros.nodes.core.declaration import Declaration
+from pierburg_ros.parameter import Parameter as Declaration
 
 PLANT = (
     Declaration("actuator", "pierburg", "name of an actuator, or path of its description", fixed=True),

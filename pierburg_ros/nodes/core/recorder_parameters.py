@@ -1,6 +1,6 @@
 """Parameters of the recorder node, and the topics it records when told no others."""
 
-from pierburg_ros.nodes.core.declaration import Declaration
+from pierburg_ros.parameter import Parameter as Declaration
 
 FLOAT64 = "std_msgs/msg/Float64"
 BOOL = "std_msgs/msg/Bool"

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.torques.sensor import decode
 
 
 class ShaftSensor:
-    """Decodes Hall voltages with the actuator's nominal calibration; velocity is the filtered derivative."""
+    """Decodes Hall voltages with the actuator's nominal sensor; velocity is the filtered derivative."""
 
     def __init__(self, actuator: Actuator, time_constant: float) -> None:
-        closed = actuator.parameters["hall_voltage_closed"].nominal
-        opened = actuator.parameters["hall_voltage_open"].nominal
-        self._closed = closed
-        self._lower = actuator.lower_stop
-        self._slope = (actuator.upper_stop - actuator.lower_stop) / (opened - closed)
+        self._record = Model.nominal(actuator).record()[0]
         self.time_constant = time_constant
         self.reset()
 
@@ -24,7 +22,7 @@ class ShaftSensor:
 
     def take(self, hall_voltage: float, elapsed: float) -> tuple[float, float]:
         """Angle [rad] and velocity [rad/s] from a sample [V] taken `elapsed` [s] after the previous one."""
-        angle = self._lower + (hall_voltage - self._closed) * self._slope
+        angle = decode(self._record, hall_voltage, False)
         if self.angle is not None and elapsed > 0.0:
             difference = (angle - self.angle) / elapsed
             self.velocity += (difference - self.velocity) * elapsed / (self.time_constant + elapsed)

@@ -138,18 +138,18 @@ def _motor_stands(p, s):
 @kernel
 def _motor_bristle(p, s, travel):
     if p.presliding.stiffness == 0.0 or travel == 0.0:
-        return s.motor_bristle
+        return s.presliding.motor_bristle
     motor = torque_at(p, s, s.motor_velocity, s.current)
     friction = level(p, s.motor_direction, s.motor_velocity, s.motor_angle, motor)[0]
-    return presliding.moved(p.presliding, s.motor_bristle, friction, travel)
+    return presliding.moved(p.presliding, s.presliding.motor_bristle, friction, travel)
 
 
 @kernel
 def _line(p, s):
     """The grip on the shaft now, and the net torque on the motor as a straight line, shaft following."""
     twist = s.motor_angle - s.angle
-    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, s.velocity, s.bristle, s.time)
-    free = _motor(p, s, s.motor_angle, s.motor_velocity, s.time, s.current, s.motor_bristle)
+    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, s.velocity, s.presliding.bristle, s.time)
+    free = _motor(p, s, s.motor_angle, s.motor_velocity, s.time, s.current, s.presliding.motor_bristle)
     stiffness, damping = _felt(s, grip)
     force = free.force - _teeth(grip, s.motor_velocity, _velocity(s, grip, s.motor_velocity))
     return grip, Line(force, free.slope + damping, free.stiffness + stiffness, free.rate, free.gain)
@@ -171,7 +171,7 @@ def _trial(p, s, grip, line, step):
     travel, ended, amperes = _motor_piece(p, s, line, step)
     moved, velocity = _follow(s, grip, step, travel / step)
     time = s.time + step
-    bristle = shaft.bristle_after(p, s, moved) if s.direction != 0.0 else s.bristle
+    bristle = shaft.bristle_after(p, s, moved) if s.direction != 0.0 else s.presliding.bristle
     twist = s.motor_angle + travel - s.angle - moved
     reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time)
     velocity = _velocity(s, reached, ended)
@@ -224,7 +224,7 @@ def move(p, s, remaining):
 def _set_directions(p, s):
     """Decide whether the standing sides begin to move."""
     twist = s.motor_angle - s.angle
-    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, 0.0, s.bristle, s.time)
+    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, 0.0, s.presliding.bristle, s.time)
     if s.direction == 0.0:
         s.direction = shaft.onset(p, s, _teeth(grip, s.motor_velocity, 0.0), s.angle, s.time)
     if _motor_stands(p, s):
@@ -247,8 +247,8 @@ def _breaking_time(p, s, grip, line, step):
 def _take(p, s, sides, step, breaks):
     """Accept a step."""
     if s.direction != 0.0:
-        s.bristle = shaft.bristle_after(p, s, sides.travel)
-    s.motor_bristle = _motor_bristle(p, s, sides.motor_travel)
+        s.presliding.bristle = shaft.bristle_after(p, s, sides.travel)
+    s.presliding.motor_bristle = _motor_bristle(p, s, sides.motor_travel)
     s.motor_angle += sides.motor_travel
     s.motor_velocity, s.current = sides.motor_velocity, sides.current
     if sides.motor_velocity * s.motor_direction < 0.0:

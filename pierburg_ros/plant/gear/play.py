@@ -34,7 +34,7 @@ def move(p, s, remaining):
         s.direction = onset(p, s, s.time, s.current)
         if s.direction == 0.0:
             return hold(p, s, remaining)
-    if _torn(p, s, s.angle, s.velocity, s.bristle, s.time):
+    if _torn(p, s, s.angle, s.velocity, s.presliding.bristle, s.time):
         _part(s, s.direction)
         return 0.0
     return slide_joined(p, s, _tearing_time(p, s, remaining))
@@ -66,7 +66,7 @@ def _torn(p, s, angle, velocity, bristle, time):
 @kernel
 def _tearing_time(p, s, remaining):
     """How long [s] the flanks stay together: not longer than one internal step is good for."""
-    line = balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.bristle)
+    line = balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.presliding.bristle)
     late = remaining if p.plain else min(remaining, max(s.step, SHORTEST))
     if not _tears(p, s, line, late):
         return late

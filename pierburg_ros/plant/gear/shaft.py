@@ -30,9 +30,9 @@ def onset(p, s, tooth, angle, time):
     own = own_share(p)
     motor = torque_at(p, s, s.motor_velocity, s.current)
     net = tooth - load(p, angle, 0.0, time)[0]
-    if net > hold(p, own, 1.0, angle, motor, s.bristle) and angle < upper(p):
+    if net > hold(p, own, 1.0, angle, motor, s.presliding.bristle) and angle < upper(p):
         return 1.0
-    if net < -hold(p, own, -1.0, angle, motor, s.bristle) and angle > lower(p):
+    if net < -hold(p, own, -1.0, angle, motor, s.presliding.bristle) and angle > lower(p):
         return -1.0
     return 0.0
 
@@ -60,13 +60,13 @@ def bristle_after(p, s, travel):
         return 0.0
     motor = torque_at(p, s, s.motor_velocity, s.current)
     friction = level(p, s.direction, s.velocity, s.angle, motor)[0]
-    return presliding.moved(p.presliding, s.bristle, friction, travel)
+    return presliding.moved(p.presliding, s.presliding.bristle, friction, travel)
 
 
 @kernel
 def drift(p, s, step):
     """Let the shaft go on its own for a short `step` [s], up to a rigid stop; it rests where nothing drives it on."""
-    torque, stiffness, viscous = resistance(p, s, s.angle, s.velocity, s.bristle, s.time)
+    torque, stiffness, viscous = resistance(p, s, s.angle, s.velocity, s.presliding.bristle, s.time)
     slack = max(viscous, LEAST_DAMPING)
     velocity = -torque / slack
     if velocity * s.direction <= 0.0:
@@ -74,7 +74,7 @@ def drift(p, s, step):
         return
     rate = stiffness / slack
     travel = velocity * (step if abs(rate) * step < 1e-9 else -math.expm1(-rate * step) / rate)
-    s.bristle = bristle_after(p, s, travel)
+    s.presliding.bristle = bristle_after(p, s, travel)
     s.velocity = velocity
     s.angle += travel
     if s.angle <= lower(p) or s.angle >= upper(p):

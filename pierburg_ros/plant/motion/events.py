@@ -43,9 +43,9 @@ def onset(p, s, time, amperes):
     """Direction in which motor and shaft, standing as one, begin to move: +1, -1, or 0 where friction holds."""
     motor = torque_at(p, s, 0.0, amperes)
     net = motor - load(p, s.angle, 0.0, time)[0] - ripple(p, s.motor_angle)[0]
-    if net > friction.hold(p, 1.0, 1.0, s.angle, motor, s.bristle) and s.angle < upper(p):
+    if net > friction.hold(p, 1.0, 1.0, s.angle, motor, s.presliding.bristle) and s.angle < upper(p):
         return 1.0
-    if net < -friction.hold(p, 1.0, -1.0, s.angle, motor, s.bristle) and s.angle > lower(p):
+    if net < -friction.hold(p, 1.0, -1.0, s.angle, motor, s.presliding.bristle) and s.angle > lower(p):
         return -1.0
     return 0.0
 
@@ -56,9 +56,9 @@ def motor_onset(p, s, tooth, amperes):
     motor = torque_at(p, s, 0.0, amperes)
     net = motor - tooth - ripple(p, s.motor_angle)[0]
     part = share(p, PARTED)
-    if net > friction.hold(p, part, 1.0, s.motor_angle, motor, s.motor_bristle):
+    if net > friction.hold(p, part, 1.0, s.motor_angle, motor, s.presliding.motor_bristle):
         return 1.0
-    if net < -friction.hold(p, part, -1.0, s.motor_angle, motor, s.motor_bristle):
+    if net < -friction.hold(p, part, -1.0, s.motor_angle, motor, s.presliding.motor_bristle):
         return -1.0
     return 0.0
 
@@ -112,7 +112,7 @@ def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
 
     The event is the velocity passing zero, or the angle reaching `low` or `high` [rad], where it stays.
     """
-    bristle = s.bristle if kind == JOINED else s.motor_bristle
+    bristle = s.presliding.bristle if kind == JOINED else s.presliding.motor_bristle
     line = balance(p, s, kind, angle, velocity, direction, s.time, s.current, bristle)
     step = min(_first_step(p, s, line.slope, remaining), turn(p, s, velocity, line))
     while True:
@@ -152,10 +152,12 @@ def _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes):
     if p.presliding.stiffness == 0.0:
         return
     if kind == JOINED:
-        s.bristle = _bristle(p, s, s.bristle, direction, angle, velocity, travel, ended, amperes)
-        s.motor_bristle = s.bristle
+        s.presliding.bristle = _bristle(p, s, s.presliding.bristle, direction, angle, velocity, travel, ended, amperes)
+        s.presliding.motor_bristle = s.presliding.bristle
     else:
-        s.motor_bristle = _bristle(p, s, s.motor_bristle, direction, angle, velocity, travel, ended, amperes)
+        s.presliding.motor_bristle = _bristle(
+            p, s, s.presliding.motor_bristle, direction, angle, velocity, travel, ended, amperes
+        )
 
 
 @kernel
@@ -197,7 +199,7 @@ def _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes,
     """Angle [rad] by which the step may be wrong, from the torque that the straight line misses at its end."""
     bristle = 0.0
     if p.presliding.stiffness != 0.0:
-        bristle = s.bristle if kind == JOINED else s.motor_bristle
+        bristle = s.presliding.bristle if kind == JOINED else s.presliding.motor_bristle
         bristle = _bristle(p, s, bristle, direction, angle, velocity, travel, ended, amperes)
     actual = balance(p, s, kind, angle + travel, ended, direction, s.time + step, amperes, bristle).force
     expected = after(p, line, step, travel, ended - velocity, amperes - s.current)

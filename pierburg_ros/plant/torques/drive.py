@@ -24,7 +24,9 @@ def switch(p, s, duty, supply, closed_bridge):
     s.voltage = effective * supply
     s.resistance = p.armature_resistance
     if heats:
-        s.resistance = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.rise)
+        s.resistance = thermal_resistance.resistance(
+            p.thermal_resistance, p.armature_resistance, s.thermal_resistance.rise
+        )
     if p.supply_sag.source_resistance != 0.0:
         s.resistance += supply_sag.resistance(p.supply_sag, effective)
     constant = p.gear_ratio * p.torque_constant
@@ -60,5 +62,7 @@ def warm(p, s, travel, change, duration):
     else:
         induced = p.gear_ratio * p.torque_constant * travel + p.armature_inductance.inductance * change
         amperes = (s.voltage - induced / duration) / s.resistance
-    hot = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.rise)
-    s.rise = thermal_resistance.heated(p.thermal_resistance, s.rise, amperes * amperes * hot, duration)
+    hot = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.thermal_resistance.rise)
+    s.thermal_resistance.rise = thermal_resistance.heated(
+        p.thermal_resistance, s.thermal_resistance.rise, amperes * amperes * hot, duration
+    )

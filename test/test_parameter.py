@@ -5,11 +5,11 @@ import math
 import pytest
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.core.declaration import Declaration
+from pierburg_ros.parameter import Parameter
 
-RATE = Declaration("rate", 500.0, "ticks per second", "Hz", 1.0, 2000.0)
-SEED = Declaration("seed", 0, "seed of the noise", minimum=0, maximum=10)
-FORM = Declaration("form", "mcap", "form of the file", choices=("mcap", "rosbag2"))
+RATE = Parameter("rate", 500.0, "ticks per second", "Hz", 1.0, 2000.0)
+SEED = Parameter("seed", 0, "seed of the noise", minimum=0, maximum=10)
+FORM = Parameter("form", "mcap", "form of the file", choices=("mcap", "rosbag2"))
 
 
 def test_an_integer_is_taken_for_a_double():
@@ -38,7 +38,7 @@ def test_a_whole_number_is_not_taken_from_anything_else(value):
 
 def test_a_boolean_is_no_number_and_no_text():
     with pytest.raises(InputError, match="true or false"):
-        Declaration("lockstep", False, "lockstep").accepted(1)
+        Parameter("lockstep", False, "lockstep").accepted(1)
 
 
 def test_choices_are_listed():
@@ -48,7 +48,7 @@ def test_choices_are_listed():
 
 
 def test_a_list_of_texts():
-    topics = Declaration("topics", ["duty"], "topics")
+    topics = Parameter("topics", ["duty"], "topics")
     assert topics.accepted(("a", "b")) == ["a", "b"]
     with pytest.raises(InputError, match="a list of texts"):
         topics.accepted([1, 2])

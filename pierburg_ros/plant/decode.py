@@ -1,0 +1,33 @@
+"""From a measured value back to the angle that it shows, by the characteristic of a model's sensor."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.torques import sensor
+
+
+def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> NDArray[np.float64]:
+    """Angle [rad] that each of the `measured` values shows, same shape; `quantity`: what they are, if not the model's.
+
+    Play and lag of the sensor are not undone: they depend on what was before.
+    """
+    record, is_angle = model.record()[0], _is_angle(model, quantity)
+    values = np.asarray(measured, dtype=np.float64)
+    return np.asarray(sensor.decode_all(record, values.ravel(), is_angle)).reshape(values.shape)
+
+
+def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:
+    """Change of the measured value per rad at `angle` [rad]."""
+    return float(sensor.sensitivity(model.record()[0], angle, _is_angle(model, quantity)))
+
+
+def angle_per_unit(model: Model) -> float:
+    """Angle [rad] that one unit of the measured quantity stands for, on average over the span."""
+    return 1.0 if _is_angle(model, None) else 1.0 / float(sensor.per_radian(model.record()[0]))
+
+
+def _is_angle(model: Model, quantity: str | None) -> bool:
+    return (quantity or model.actuator.quantity) == "position"
