@@ -16,7 +16,7 @@ from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topic
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.plot import write_picture
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import from_standstill
+from pierburg_ros.estimation.initial_state import from_standstill
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.identify import identify as identify_recordings
 from pierburg_ros.identification.paper.table_one import audit as audit_checks

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.initial_state import from_standstill
 from pierburg_ros.estimation.run import resimulated
-from pierburg_ros.estimation.start import from_standstill
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of

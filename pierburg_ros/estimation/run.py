@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.start import Start, from_standstill
+from pierburg_ros.estimation.initial_state import InitialState, from_standstill
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
@@ -37,7 +37,7 @@ class Run:
     time: Signal
     measured: Signal
     quantity: str
-    start: Start
+    start: InitialState
     train: Flags
     validation: Flags
     decoder: Model | None = None
@@ -82,7 +82,7 @@ def run_of(recording: Recording, model: Model) -> Run:
             " expected a recorded position. Choose another --actuator."
         )
     recording = from_standstill(recording, model)
-    start = Start.of(recording.time, recording.measured)
+    start = InitialState.of(recording.time, recording.measured)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
     return Run(
         recording.name,
@@ -111,7 +111,7 @@ def inputs_of(recording: Recording) -> Inputs:
     return Inputs(times, duty, supply, enabled)
 
 
-def inputs_in_force(recording: Recording, start: Start, model: Model) -> Inputs:
+def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> Inputs:
     """`inputs_of` a recording of a running actuator, seen to begin at `start`.
 
     Away from the closed stop only a duty holds the shaft against its spring: there the first one has been in force

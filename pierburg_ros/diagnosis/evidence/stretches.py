@@ -10,8 +10,8 @@ import numpy as np
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.initial_state import InitialState
 from pierburg_ros.estimation.run import Run
-from pierburg_ros.estimation.start import Start
 
 SETTLED = 5
 """Samples to either side of a restart over which the angle is averaged while the shaft stands still."""
@@ -47,7 +47,7 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
     return stretches
 
 
-def _start(run: Run, motion: Motion, sample: int) -> Start:
+def _start(run: Run, motion: Motion, sample: int) -> InitialState:
     """What the samples around `sample` say: their mean while the shaft stands still, with its velocity as it moves."""
     if sample == 0:
         return run.start
@@ -55,4 +55,4 @@ def _start(run: Run, motion: Motion, sample: int) -> Start:
     middle = float(np.mean(run.time[near])) - float(run.time[sample])
     stands = motion.closed[sample] or motion.open[sample] or not motion.moving[sample]
     rate = 0.0 if stands else float(motion.velocity[sample]) / motion.angle_per_unit
-    return Start(float(np.mean(run.measured[near])) - rate * middle, rate, run.start.noise, True)
+    return InitialState(float(np.mean(run.measured[near])) - rate * middle, rate, run.start.noise, True)

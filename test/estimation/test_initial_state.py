@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.estimation.start import Start, from_standstill
+from pierburg_ros.estimation.initial_state import InitialState, from_standstill
 from pierburg_ros.recording import Channel, Recording
 
 NOISE = 0.003
@@ -17,7 +17,7 @@ def drawn(times, levels, seed=0):
 
 
 def state(recording, nominal):
-    return Start.of(recording.time, recording.measured).state(nominal, "hall_voltage")
+    return InitialState.of(recording.time, recording.measured).state(nominal, "hall_voltage")
 
 
 def test_a_shaft_seen_at_a_stop_starts_exactly_there(nominal):
@@ -40,7 +40,7 @@ def test_one_that_rests_for_a_moment_starts_at_rest(nominal, seed):
 def test_a_shaft_that_moves_at_once_starts_with_its_velocity(nominal):
     time = np.arange(2000) / 500.0
     moving = 2.47 + 2.0 * time + 1e-4 * np.random.default_rng(3).standard_normal(2000)
-    _, velocity = Start.of(time, moving).state(nominal, "hall_voltage")
+    _, velocity = InitialState.of(time, moving).state(nominal, "hall_voltage")
     assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
 
 
@@ -73,4 +73,4 @@ def test_one_that_slows_down_is_taken_up_where_it_comes_to_rest(nominal, seed):
 def test_one_that_rests_too_late_loses_nothing(nominal):
     recording = drawn((0.0, 0.05, 4.0, 6.0, 9.0), (1.0, 1.5, 3.0, 3.0, 0.42))
     assert from_standstill(recording, nominal) is recording
-    assert not Start.of(recording.time, recording.measured).known
+    assert not InitialState.of(recording.time, recording.measured).known

@@ -1,4 +1,4 @@
-"""Where the simulation of a recording starts: from which sample, at which angle, how fast."""
+"""The state in which the simulation of a recording starts: from which sample, at which angle, how fast."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Start:
+class InitialState:
     """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit.
 
     It is `known` where the shaft stands still or creeps.
@@ -47,7 +47,7 @@ class Start:
     known: bool
 
     @staticmethod
-    def of(time: Signal, measured: Signal) -> Start:
+    def of(time: Signal, measured: Signal) -> InitialState:
         """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once."""
         noise = noise_of(time, measured)
         length, even = _stays(measured[:LONGEST], noise), bool(_even(measured[:EVEN], BRISK * noise, noise).any())
@@ -57,9 +57,9 @@ class Start:
         length = min(max(length, EVEN if even else FEWEST if known else SHORTEST), measured.size)
         elapsed, first = time[:length] - time[0], measured[:length]
         if known and not _slopes(elapsed, first, noise):
-            return Start(float(np.mean(first)), 0.0, noise, known)
+            return InitialState(float(np.mean(first)), 0.0, noise, known)
         rate, level = np.polyfit(elapsed, first, 1)
-        return Start(float(level), float(rate), noise, known)
+        return InitialState(float(level), float(rate), noise, known)
 
     def state(self, model: Model, quantity: str) -> tuple[float, float]:
         """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
@@ -82,7 +82,7 @@ def from_standstill(recording: Recording, nominal: Model) -> Recording:
     Samples tell badly how fast a shaft moves. A simulation that begins a little off then rests elsewhere until the
     next stop, for dry friction lets it rest anywhere.
     """
-    start = Start.of(recording.time, recording.measured)
+    start = InitialState.of(recording.time, recording.measured)
     if start.known or start.state(nominal, recording.quantity)[1] == 0.0:
         return recording
     still = _even(recording.measured[: int(LATEST * recording.measured.size)], SLOW * start.noise, start.noise)
