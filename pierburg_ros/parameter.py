@@ -50,7 +50,7 @@ class Parameter:
         label = name or self.name
         expected = float if self.default is None else type(self.default)
         if expected is float and isinstance(value, Real) and not isinstance(value, bool):
-            value = float(value) if abs(value) < 2**1000 else math.copysign(math.inf, value)
+            value = _double(value)
         if expected is list and isinstance(value, tuple):
             value = list(value)
         texts = not isinstance(value, list) or all(isinstance(each, str) for each in value)
@@ -65,6 +65,14 @@ class Parameter:
     def holds(self, value: float) -> bool:
         """Whether a number is finite and in the range."""
         return math.isfinite(value) and self.minimum <= value <= self.maximum
+
+
+def _double(value: Real) -> float:
+    """`value` as a double, infinite where it is too large for one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def _shown(value: object) -> str:

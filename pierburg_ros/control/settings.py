@@ -19,7 +19,7 @@ from pierburg_ros.parameter import Parameter
 
 def declared(default: float, unit: str, minimum: float, maximum: float, meaning: str) -> Any:
     """A dataclass field that carries its unit, range and meaning."""
-    metadata = {"unit": unit, "minimum": minimum, "maximum": maximum, "meaning": meaning}
+    metadata = {"default": default, "unit": unit, "minimum": minimum, "maximum": maximum, "meaning": meaning}
     return field(default=default, metadata=metadata)
 
 
@@ -79,6 +79,5 @@ class Settings:
         return np.rec.array([values], dtype=[(each.name, np.float64) for each in fields(self)])[0]
 
 
-SETTINGS: tuple[Parameter, ...] = tuple(
-    Parameter(each.name, float(each.default), **each.metadata) for each in fields(Settings)
-)  # type: ignore[arg-type]
+SETTINGS: tuple[Parameter, ...] = tuple(Parameter(each.name, **each.metadata) for each in fields(Settings))
+"""Their declarations, in the order of the fields."""

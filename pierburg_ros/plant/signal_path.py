@@ -13,7 +13,7 @@ from pierburg_ros.plant.state import QUEUE
 from pierburg_ros.plant.torques import drive, sensor
 
 LONGEST = 0.002
-"""Longest stretch [s] over which the winding keeps its resistance, and the shaft its velocity for the sensor's lag."""
+"""Longest stretch [s] over which duty in force and resistance stay, and the shaft's velocity for the sensor's lag."""
 FORGOTTEN = 20.0
 """Time constants of the winding after which its current has forgotten the duty before, to rounding."""
 EVENTS = 20_000
@@ -49,6 +49,7 @@ def recall(p, s, times, duty, supply_voltage, closed_bridge):
         first -= 1
     for index in range(max(first, 0), arrived + 1):
         until = times[index + 1] + p.input_delay.delay if index < arrived else s.time
+        s.arrived = duty[index]
         drive.switch(p, s, duty[index], supply, closed_bridge)
         if remembered > 0.0:
             s.current = drive.relaxed_current(p, s, until - times[index] - p.input_delay.delay)
@@ -72,7 +73,7 @@ def _act_late(p, s, duty, supply, closed_bridge, duration):
     """Put `duty` under way and let those that arrive act, for `duration` [s]."""
     _enqueue(s, s.time + p.input_delay.delay, duty)
     end = s.time + duration
-    in_force = s.duty
+    in_force = s.arrived
     while s.time < end:
         while s.waiting > 0 and s.queue_time[s.first] <= s.time:
             in_force = s.queue_duty[s.first]
@@ -86,7 +87,7 @@ def _act_late(p, s, duty, supply, closed_bridge, duration):
 @kernel
 def _enqueue(s, time, duty):
     """Put a change of duty under way; in a full queue the newest is replaced."""
-    newest = s.queue_duty[(s.first + s.waiting - 1) % QUEUE] if s.waiting > 0 else s.duty
+    newest = s.queue_duty[(s.first + s.waiting - 1) % QUEUE] if s.waiting > 0 else s.arrived
     if duty == newest:
         return
     if s.waiting < QUEUE:
@@ -97,16 +98,19 @@ def _enqueue(s, time, duty):
 
 @kernel
 def _act(p, s, duty, supply, closed_bridge, duration):
-    """One duty, in force at the motor, for `duration` [s]."""
+    """One duty, arrived at the driver, for `duration` [s]."""
+    s.arrived = duty
     if math.isnan(s.angle):
         s.time += duration
         return
     stretches = 1
     if p.creeps:
         stretches = max(math.ceil(duration / LONGEST - 1e-6), 1)
+    stretch = duration / stretches
     for _ in range(stretches):
-        drive.switch(p, s, duty, supply, closed_bridge)
-        _mechanics(p, s, duration / stretches)
+        in_force = duty
+        drive.switch(p, s, in_force, supply, closed_bridge)
+        _mechanics(p, s, stretch)
 
 
 @kernel

@@ -41,6 +41,7 @@ STATE = np.dtype(
         ("motor_direction", np.float64),
         ("flank", np.int64),  # touching: +1 the opening one, -1 the closing one, 0 none
         ("current", np.float64),  # A
+        ("arrived", np.float64),  # duty that has arrived at the driver
         ("duty", np.float64),  # in force at the motor, before the dead band
         ("supply", np.float64),  # V
         ("closed_bridge", np.bool_),
