@@ -20,6 +20,7 @@ from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.sampled_plant import Sample, SampledPlant
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.nodes.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.held_back import HeldBack
 from pierburg_ros.nodes.pacing import Pacer
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.plant_time import Lockstep, tick_as_time_source, tick_by_clock
@@ -44,6 +45,7 @@ class PlantNode(LiveNode):
         self.declare(self.plant.physics.declarations())
         self.lockstep = Lockstep(self.stopping) if self.values["lockstep"] else None
         self._clock_publisher = self.create_publisher(Clock, "/clock", PUBLISHED) if self.is_time_source else None
+        self.held_back = HeldBack(self, self.diagnostics, self.stopping) if self.is_time_source else None
         self._hall_publisher = self.create_publisher(Float64, "hall_voltage", PUBLISHED)
         self._duty_publisher = self.create_publisher(Float64, "applied_duty", PUBLISHED)
         self._joint_publisher = self.create_publisher(JointState, "joint_states", PUBLISHED)
