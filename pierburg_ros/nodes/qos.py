@@ -1,6 +1,9 @@
 """Quality of service of the topics in the contract."""
 
+from typing import Any
+
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 SIGNALS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 """Reading signals at the sample rate: a late reader wants the newest ones, not the past."""
@@ -22,6 +25,9 @@ RECORDED = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.RELIABLE)
 PROGRESS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """How far a recorder is, for a plant that may start after it."""
 
+OVERRIDABLE = (SIGNALS, PUBLISHED, COMMANDS)
+"""Profiles that a person may change, topic by topic, with the parameters `qos_overrides`."""
+
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
@@ -38,3 +44,10 @@ def described(profile: QoSProfile) -> dict[str, object]:
         "liveliness_lease_duration": dict(_FOREVER),
         "avoid_ros_namespace_conventions": False,
     }
+
+
+def overridable(profile: object, options: dict[str, Any]) -> dict[str, Any]:
+    """The options of a publisher or subscription, with leave to override its profile if it is one of ours."""
+    if profile not in OVERRIDABLE:
+        return options
+    return {"qos_overriding_options": QoSOverridingOptions.with_default_policies(), **options}
