@@ -1,4 +1,4 @@
-"""What the benchmarks ran on, and where in docs/benchmarks.md their tables go."""
+"""What the benchmarks ran on, and where in the pages of docs/ their tables go."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import platform
 from pathlib import Path
 
-DOCUMENT = Path(__file__).parent.parent / "docs" / "benchmarks.md"
+DOCUMENTS = Path(__file__).parent.parent / "docs"
 
 
 def machine() -> str:
@@ -20,14 +20,16 @@ def machine() -> str:
     )
 
 
-def write_section(name: str, text: str) -> None:
-    """Put `text` between the marks of section `name` in the document, at its end where there are none yet."""
+def write_section(name: str, text: str, page: str = "benchmarks.md") -> None:
+    """Put `text` between the marks of section `name` in a page of docs/, at its end where there are none yet."""
     begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-    document = DOCUMENT.read_text(encoding="utf-8") if DOCUMENT.exists() else "# Benchmarks\n"
+    target = DOCUMENTS / page
+    title = page.removesuffix(".md").capitalize()
+    document = target.read_text(encoding="utf-8") if target.exists() else f"# {title}\n"
     section = f"{begin}\n{text.strip()}\n{end}"
     if begin in document:
         before, rest = document.split(begin)
         document = before + section + rest.split(end, 1)[1]
     else:
         document = f"{document.rstrip()}\n\n{section}\n"
-    DOCUMENT.write_text(document, encoding="utf-8")
+    target.write_text(document, encoding="utf-8")

@@ -1,15 +1,16 @@
 """What pip, colcon and ROS read of the package, against what the package is."""
 
-import ast
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 import yaml
+from support.launch_file import launched
 
 from pierburg_ros.control import SETTINGS, Settings
 from pierburg_ros.control.parameter_file import read_parameter_file
+from pierburg_ros.nodes.core.controller_parameters import CONTROLLER
 from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
 
@@ -23,11 +24,6 @@ NOT_OF_ROS = re.compile(r"python3-")
 def dependencies():
     """Names of all packages that package.xml depends on."""
     return {element.text for element in MANIFEST if element.tag.endswith("depend")}
-
-
-def literals(path):
-    """All text constants in a source file."""
-    return {n.value for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.Constant)}
 
 
 def test_the_manifest_is_format_3_with_a_valid_maintainer():
@@ -67,18 +63,46 @@ def test_files_that_are_installed_exist():
 
 
 def test_the_launch_file_names_executables_and_parameter_files_that_exist():
-    text = LAUNCH.read_text()
-    executables = re.findall(r'executable="(\w+)"', text)
-    assert sorted(executables) == ["controller", "plant", "recorder"]
-    assert all(f'"{name} = pierburg_ros.nodes.{name}:main"' in SETUP for name in executables)
-    files = [name for name in literals(LAUNCH) if isinstance(name, str) and name.endswith(".yaml")]
-    assert sorted(files) == ["controller.yaml", "plant.yaml", "recorder.yaml"]
-    assert all((ROOT / "config" / name).exists() for name in files)
+    _, nodes = launched()
+    assert [node["executable"] for node in nodes] == ["plant", "controller", "recorder"]
+    for node in nodes:
+        assert f'"{node["executable"]} = pierburg_ros.nodes.{node["executable"]}:main"' in SETUP
+        assert Path(node["parameters"][0]).exists()
 
 
-def parameters(file, node):
-    """Parameters that a configuration file gives to a node."""
-    return yaml.safe_load((ROOT / "config" / file).read_text())[node]["ros__parameters"]
+def test_every_launch_argument_has_a_description():
+    arguments, _ = launched()
+    wanted = {"namespace", "actuator", "model", "setpoint", "output", "time", "record", "log_level", "config"}
+    assert set(arguments) == wanted
+    assert all(len(each["description"]) > 20 for each in arguments.values())
+
+
+@pytest.mark.parametrize("time", ["wall", "simulated", "lockstep"])
+def test_one_launch_argument_sets_the_time_of_all_nodes(time):
+    _, nodes = launched(time=time)
+    plant, controller, recorder = (node["parameters"][1] for node in nodes)
+    assert controller["use_sim_time"] == recorder["use_sim_time"] == plant["simulated_time"] == (time != "wall")
+    assert plant["lockstep"] == (time == "lockstep")
+
+
+def test_the_launch_file_gives_only_parameters_that_exist():
+    _, nodes = launched(time="lockstep", namespace="left", record="true")
+    declared = (PLANT, CONTROLLER, RECORDER)
+    for node, declarations in zip(nodes, declared, strict=True):
+        accepted = {each.name: each for each in declarations}
+        for name, value in node["parameters"][1].items():
+            assert name == "use_sim_time" or accepted[name].accepted(value) == value
+        assert node["namespace"] == "left"
+
+
+def test_the_launch_file_leaves_the_recorder_out_when_told():
+    _, nodes = launched(record="false")
+    assert [node["name"] for node in nodes] == ["plant", "controller"]
+
+
+def parameters(file):
+    """Parameters that a configuration file gives to a node of any name."""
+    return yaml.safe_load((ROOT / "config" / file).read_text())["/**"]["ros__parameters"]
 
 
 def test_the_plants_file_names_parameters_that_exist_in_their_range():
@@ -86,7 +110,7 @@ def test_the_plants_file_names_parameters_that_exist_in_their_range():
 
     physics = Physics(chosen_model("pierburg", ""), "exact", 0.0, 0)
     declared = {each.name: each for each in (*PLANT, *physics.declarations())}
-    given = parameters("plant.yaml", "plant")
+    given = parameters("plant.yaml")
     assert {name: declared[name].accepted(value) for name, value in given.items()} == given
     nominal = {each.name: each.default for each in physics.declarations()}
     assert {name: value for name, value in given.items() if name in nominal}.items() <= nominal.items()
@@ -94,12 +118,12 @@ def test_the_plants_file_names_parameters_that_exist_in_their_range():
 
 def test_the_controllers_file_holds_the_settings_in_the_package():
     assert read_parameter_file(ROOT / "config" / "controller.yaml") == Settings()
-    assert {setting.name for setting in SETTINGS} <= set(parameters("controller.yaml", "controller"))
+    assert {setting.name for setting in SETTINGS} <= set(parameters("controller.yaml"))
 
 
 def test_the_recorders_file_names_parameters_that_exist():
     declared = {each.name: each for each in RECORDER}
-    given = parameters("recorder.yaml", "recorder")
+    given = parameters("recorder.yaml")
     assert {name: declared[name].accepted(value) for name, value in given.items()} == given
 
 

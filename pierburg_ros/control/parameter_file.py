@@ -12,13 +12,15 @@ from pierburg_ros.control.settings import SETTINGS, Settings
 from pierburg_ros.errors import InputError
 
 NODE = "controller"
+ANY = "/**"
+"""Key of a node of any name in any namespace."""
 NODE_PARAMETERS = {"use_sim_time", "setpoint", "setpoint_file", "hall_timeout", "publish_internals"}
 """Parameters of the controller's node that are not settings of the control law."""
 
 
 def parameter_file(settings: Settings, header: Iterable[str] = ()) -> str:
     """The text of a parameter file with every setting, its unit and its meaning, under `header` lines."""
-    lines = [*(f"# {line}" for line in header), f"{NODE}:", "  ros__parameters:"]
+    lines = [*(f"# {line}" for line in header), f"{ANY}:", "  ros__parameters:"]
     for setting in SETTINGS:
         value = getattr(settings, setting.name)
         lines.append(f"    {setting.name}: {ros_double(value)}  # {setting.unit}, {setting.meaning}")
@@ -50,7 +52,7 @@ def parameters_of(content: Any, path: str | Path) -> dict[str, Any]:
     """The parameters that a file's content has for the node `controller`, in whatever namespace."""
     nodes = content.items() if isinstance(content, dict) else ()
     for node, section in nodes:
-        if str(node).split("/")[-1] in (NODE, "**") and isinstance(section, dict):
+        if str(node).split("/")[-1] in (NODE, ANY.strip("/")) and isinstance(section, dict):
             parameters = section.get("ros__parameters")
             if isinstance(parameters, dict):
                 return parameters

@@ -17,9 +17,10 @@ from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW
 from pierburg_ros.nodes.core.sampled_controller import SampledController
 from pierburg_ros.nodes.diagnostics import ERROR
 from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED, SIGNALS
+from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED
 from pierburg_ros.nodes.running import run
 from pierburg_ros.nodes.sample_clock import SampleClock
+from pierburg_ros.nodes.signals import Signal
 
 STATUS_PERIOD = 0.1
 """Time between two publications of an unchanged `active_setpoint` [s]."""
@@ -49,7 +50,7 @@ class ControllerNode(LiveNode):
             name: self.create_publisher(kind, f"~/{name}", PUBLISHED) for name, kind in INTERNALS.items()
         }
         self._sample_clock = SampleClock(self)
-        self.create_subscription(Float64, "hall_voltage", self._on_hall_voltage, SIGNALS)
+        self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
         self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
         self.create_service(SetBool, "~/enable", self._on_enable)
         self.create_timer(STATUS_PERIOD, self._publish_setpoint, clock=steady)

@@ -11,8 +11,9 @@ from pierburg_ros.control import Schedule, read_duty_file, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED, SIGNALS
+from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED
 from pierburg_ros.nodes.running import run
+from pierburg_ros.nodes.signals import Signal
 from pierburg_ros.parameter import Parameter as Declaration
 
 EXCITATION = (
@@ -34,7 +35,7 @@ class ExcitationNode(LiveNode):
         self._publisher = self.create_publisher(Float64, topic, quality)
         self._first: int | None = None
         self._sent: float | None = None
-        self.create_subscription(Float64, "hall_voltage", self._on_hall_voltage, SIGNALS)
+        self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._watchdog = self.create_timer(self.values["patience"], self._on_silence, clock=steady)
         self.open_parameters()

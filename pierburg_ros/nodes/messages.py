@@ -10,7 +10,7 @@ from std_msgs.msg import Float64
 SECOND = 1_000_000_000
 """Nanoseconds in a second."""
 SHAFT = "swirl_shaft"
-"""Name of the joint in `joint_states`."""
+"""Name of the joint in `joint_states`, outside any namespace."""
 
 
 def stamp(time: int) -> Time:
@@ -33,8 +33,13 @@ def number(value: float) -> Float64:
     return Float64(data=value)
 
 
-def joint_state(time: int, angle: float, velocity: float) -> JointState:
-    """Angle [rad] and velocity [rad/s] of the shaft at `time` [ns]."""
-    message = JointState(name=[SHAFT], position=[angle], velocity=[velocity])
+def joint_name(namespace: str) -> str:
+    """Name of the shaft's joint: with the namespace before it, so that two actuators differ on one robot."""
+    return "_".join([*namespace.strip("/").split("/"), SHAFT]).lstrip("_")
+
+
+def joint_state(joint: str, time: int, angle: float, velocity: float) -> JointState:
+    """Angle [rad] and velocity [rad/s] of the shaft at `time` [ns], under the name of its `joint`."""
+    message = JointState(name=[joint], position=[angle], velocity=[velocity])
     message.header.stamp = stamp(time)
     return message

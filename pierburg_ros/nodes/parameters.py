@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from threading import Event
 from typing import Any
 
@@ -16,10 +17,13 @@ from rcl_interfaces.msg import (
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.nodes.core.parameter_files import unread_files
 from pierburg_ros.nodes.diagnostics import Diagnostics
-from pierburg_ros.nodes.qos import COMMANDS
+from pierburg_ros.nodes.qos import COMMANDS, overridable
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.parameter import Value
 
@@ -39,6 +43,16 @@ class LiveNode(Node):
         self._declared: dict[str, Declaration] = {}
         self.diagnostics = Diagnostics(self, self.counters)
         self._given = self._overrides()
+
+    def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
+        """A publisher whose quality of service `qos_overrides` may change, if it is one of the project's topics."""
+        return super().create_publisher(kind, topic, profile, **overridable(profile, options))
+
+    def create_subscription(
+        self, kind: type, topic: str, callback: Callable[..., None], profile: Any, **options: Any
+    ) -> Subscription:
+        """A subscription whose quality of service `qos_overrides` may change, as for publishers."""
+        return super().create_subscription(kind, topic, callback, profile, **overridable(profile, options))
 
     def accept(self, changes: Mapping[str, Any]) -> None:
         """Put `changes`, each checked on its own, in force together; InputError refuses them all."""
@@ -77,6 +91,8 @@ class LiveNode(Node):
         """From here on parameters can be set; names given at the start that do not exist are reported."""
         for name in self._given:
             self.diagnostics.refuse(self._unknown(name))
+        for reason in (*unread_files(self.get_fully_qualified_name(), sys.argv), *self._unused_overrides()):
+            self.diagnostics.refuse(reason)
         self.add_on_set_parameters_callback(self._on_set)
         self.create_subscription(ParameterMessage, "~/set_parameter", self._on_message, COMMANDS)
 
@@ -115,6 +131,16 @@ class LiveNode(Node):
 
     def _unknown(self, name: str) -> str:
         return f"{self.get_name()} has no parameter {name!r}; 'ros2 param list' shows those it has."
+
+    def _unused_overrides(self) -> list[str]:
+        """Complaints about qualities of service that were given for topics which this node does not have."""
+        topics = {each.topic_name for each in (*self.publishers, *self.subscriptions)}
+        given = {name.split(".")[0] for name in self.get_parameters_by_prefix("qos_overrides")}
+        return [
+            f"{self.get_name()} has no topic {topic} for qos_overrides; write its full name, as in"
+            f" {self.resolve_topic_name('name')}."
+            for topic in sorted(given - topics)
+        ]
 
     def _overrides(self) -> dict[str, Value]:
         """Values given at the start, taken out so that they can be checked first."""

@@ -20,11 +20,13 @@ from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.sampled_plant import Sample, SampledPlant
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.nodes.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.held_back import HeldBack
 from pierburg_ros.nodes.pacing import Pacer
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.plant_time import Lockstep, tick_as_time_source, tick_by_clock
-from pierburg_ros.nodes.qos import PUBLISHED, SIGNALS
+from pierburg_ros.nodes.qos import PUBLISHED
 from pierburg_ros.nodes.running import run
+from pierburg_ros.nodes.signals import Signal
 
 SWITCH_INTERVAL = 0.0005
 """Longest turn of one thread [s] while another waits; Python's own 5 ms are more than a period."""
@@ -44,10 +46,12 @@ class PlantNode(LiveNode):
         self.declare(self.plant.physics.declarations())
         self.lockstep = Lockstep(self.stopping) if self.values["lockstep"] else None
         self._clock_publisher = self.create_publisher(Clock, "/clock", PUBLISHED) if self.is_time_source else None
+        self.held_back = HeldBack(self, self.diagnostics, self.stopping) if self.is_time_source else None
         self._hall_publisher = self.create_publisher(Float64, "hall_voltage", PUBLISHED)
         self._duty_publisher = self.create_publisher(Float64, "applied_duty", PUBLISHED)
+        self._joint = messages.joint_name(self.get_namespace())
         self._joint_publisher = self.create_publisher(JointState, "joint_states", PUBLISHED)
-        self._duty_subscription = self.create_subscription(Float64, "duty", self._on_duty, SIGNALS)
+        self._duty = Signal(self, Float64, "duty", self._on_duty)
         self.create_service(Trigger, "~/reset", self._on_reset)
         self.open_parameters()
 
@@ -95,7 +99,7 @@ class PlantNode(LiveNode):
             self._clock_publisher.publish(messages.clock(sample.time))
         self._hall_publisher.publish(messages.number(sample.hall_voltage))
         self._duty_publisher.publish(messages.number(sample.duty))
-        self._joint_publisher.publish(messages.joint_state(sample.time, sample.angle, sample.velocity))
+        self._joint_publisher.publish(messages.joint_state(self._joint, sample.time, sample.angle, sample.velocity))
 
     def begin(self) -> None:
         """Tick in a thread of its own while duties, parameters and services are served."""
@@ -125,7 +129,7 @@ class PlantNode(LiveNode):
         return SampledPlant(physics, ShaftSensor(model.actuator, values["velocity_time_constant"]))
 
     def _has_partners(self) -> bool:
-        return self._hall_publisher.get_subscription_count() > 0 and self._duty_subscription.get_publisher_count() > 0
+        return self._hall_publisher.get_subscription_count() > 0 and self._duty.publishers > 0
 
     def _on_duty(self, message: Float64) -> None:
         try:

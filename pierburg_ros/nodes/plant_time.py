@@ -46,6 +46,8 @@ def tick_as_time_source(plant: PlantNode, lockstep: Lockstep | None) -> None:
         factor = plant.values["time_factor"]
         pacer.period = period / factor if factor > 0.0 else 0.0
         pacer.wait()
+        if plant.held_back.wait(now, round(period * SECOND)):
+            pacer.restart()
 
 
 class Lockstep:

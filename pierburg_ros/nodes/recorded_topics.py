@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable
+import time
+from collections.abc import Iterable
 from dataclasses import dataclass
+from threading import Lock
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.nodes.core.numbering import Numbering
 from pierburg_ros.nodes.core.recorder_parameters import DEFAULT_TOPICS
 from pierburg_ros.nodes.definitions import message_class, type_hash
 from pierburg_ros.nodes.qos import RECORDED, described
@@ -19,26 +22,46 @@ from pierburg_ros.nodes.recording_file import Topic
 
 @dataclass(frozen=True)
 class Received:
-    """A message as it came: its number among its publisher's, and when it was sent and received [ns]."""
+    """A message as it came: its number among its publisher's, and when it was sent, received and taken [ns]."""
 
     topic: Topic
     data: bytes
     sequence: int
     sent: int
     arrived: int
+    taken: int
+
+
+class ServedElsewhere(CallbackGroup):
+    """Keeps subscriptions out of the executor's hands, for a thread that takes from them itself."""
+
+    def can_execute(self, entity: object) -> bool:
+        """Never."""
+        return False
+
+    def beginning_execution(self, entity: object) -> bool:
+        """Never."""
+        return False
+
+    def ending_execution(self, entity: object) -> None:
+        """Nothing was begun."""
 
 
 class RecordedTopics:
-    """Keeps every wanted topic subscribed and hands over what comes, counting gaps in the numbering."""
+    """Keeps every wanted topic subscribed and gives what has come, counting gaps in the numbering.
 
-    def __init__(self, node: Node, names: Iterable[str], take: Callable[[Received], None]) -> None:
-        self.lost: Counter[str] = Counter()
+    `take` may be called from one thread while another one looks at the graph.
+    """
+
+    def __init__(self, node: Node, names: Iterable[str]) -> None:
+        self.numbering: dict[str, Numbering] = {}
         self._node = node
-        self._take = take
         self._kinds = {node.resolve_topic_name(name): DEFAULT_TOPICS.get(name) for name in names}
+        self._group = ServedElsewhere()
+        self._lock = Lock()
         self._subscriptions: dict[str, Subscription] = {}
         self._topics: dict[str, Topic] = {}
-        self._last: dict[str, int] = {}
+        self._publishers: dict[str, int] = {}
         for name, kind in self._kinds.items():
             if kind is not None:
                 self._subscribe(name, kind, RECORDED)
@@ -49,14 +72,29 @@ class RecordedTopics:
         for name, known in list(self._kinds.items()):
             kinds = [known] if known else present.get(name, [])
             offers = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
+            self._publishers[name] = len(offers)
             if kinds and offers:
                 self._subscribe(name, kinds[0], profile_for(offers, keeps_history=known is None))
 
-    def drain(self) -> None:
-        """Take everything that has arrived and was not served yet."""
-        for subscription in self._subscriptions.values():
-            while taken := subscription.handle.take_message(subscription.msg_type, True):
-                subscription.callback(*taken)
+    def take(self) -> list[Received]:
+        """All that has arrived, topic by topic."""
+        found: list[Received] = []
+        with self._lock:
+            for name, subscription in self._subscriptions.items():
+                with subscription.handle:
+                    while taken := subscription.handle.take_message(subscription.msg_type, True):
+                        found.append(self._received(name, *taken))
+        return found
+
+    def losses(self) -> dict[str, tuple[int, int]]:
+        """Lost and received messages of every topic that has had any."""
+        return {name: (each.lost, each.received) for name, each in self.numbering.items() if each.received}
+
+    def count_anew(self) -> None:
+        """Begin the counts of a new file."""
+        with self._lock:
+            for each in self.numbering.values():
+                each.forget_counts()
 
     def _subscribe(self, name: str, kind: str, profile: QoSProfile) -> None:
         current = self._subscriptions.get(name)
@@ -69,29 +107,27 @@ class RecordedTopics:
             self._node.diagnostics.refuse(f"{name} is not recorded: {error}")
             del self._kinds[name]
             return
+        made = self._node.create_subscription(
+            message, name, lambda _: None, profile, raw=True, callback_group=self._group
+        )
+        with self._lock:
+            self._subscriptions[name] = made
+            self._topics.setdefault(name, Topic(name, kind))
+            self.numbering.setdefault(name, Numbering())
         if current is not None:
             self._node.destroy_subscription(current)
-        self._subscriptions[name] = self._node.create_subscription(
-            message, name, lambda data, info: self._on_message(name, kind, data, info), profile, raw=True
-        )
 
-    def _on_message(self, name: str, kind: str, data: bytes, info: dict[str, int]) -> None:
-        if name not in self._topics:
-            self._topics[name] = self._described(name, kind)
+    def _received(self, name: str, data: bytes, info: dict[str, int]) -> Received:
+        if not self.numbering[name].received and not self._topics[name].qos:
+            self._topics[name] = self._described(name)
         sequence = info["publication_sequence_number"]
-        self._count_gap(name, sequence)
+        self.numbering[name].take(sequence, self._publishers.get(name, 1))
         sent, arrived = info["source_timestamp"], info["received_timestamp"]
-        self._take(Received(self._topics[name], data, sequence, sent, arrived))
+        return Received(self._topics[name], data, sequence, sent, arrived, time.time_ns())
 
-    def _count_gap(self, name: str, sequence: int) -> None:
-        gap = sequence - self._last.get(name, sequence) - 1
-        self._last[name] = sequence
-        if gap > 0 and self._subscriptions[name].get_publisher_count() == 1:
-            self.lost[name] += gap
-
-    def _described(self, name: str, kind: str) -> Topic:
+    def _described(self, name: str) -> Topic:
         offers = self._node.get_publishers_info_by_topic(name)
-        return Topic(name, kind, tuple(described(info.qos_profile) for info in offers))
+        return Topic(name, self._topics[name].kind, tuple(described(info.qos_profile) for info in offers))
 
 
 def profile_for(offers: list[QoSProfile], keeps_history: bool) -> QoSProfile:

@@ -7,22 +7,23 @@ from collections.abc import Mapping
 from datetime import datetime
 
 from rclpy.clock import Clock, ClockType
-from rclpy.serialization import deserialize_message, serialize_message
-from rosgraph_msgs.msg import Clock as ClockMessage
+from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
-from pierburg_ros.nodes.core.source_order import SimulatedTime, SourceOrder
+from pierburg_ros.nodes.core.source_order import SourceOrder
 from pierburg_ros.nodes.definitions import type_name
-from pierburg_ros.nodes.diagnostics import ERROR
+from pierburg_ros.nodes.diagnostics import ERROR, WARN
 from pierburg_ros.nodes.parameter_values import ParameterValues
 from pierburg_ros.nodes.parameters import LiveNode
+from pierburg_ros.nodes.receiver import Receiver
+from pierburg_ros.nodes.recorded_time import CLOCK, RecordedTime
 from pierburg_ros.nodes.recorded_topics import Received, RecordedTopics
-from pierburg_ros.nodes.recording_file import RecordingFile, Topic
+from pierburg_ros.nodes.recording_file import Topic
 from pierburg_ros.nodes.recording_series import RecordingSeries
+from pierburg_ros.nodes.recording_writer import RecordingWriter
 from pierburg_ros.nodes.running import run
 
 HORIZON = 0.1
@@ -31,7 +32,6 @@ WRITE_PERIOD = 0.05
 """Time between two writings [s]."""
 LOOK_PERIOD = 0.5
 """Time between two looks at the graph [s]."""
-CLOCK = "/clock"
 
 
 class RecorderNode(LiveNode):
@@ -39,19 +39,19 @@ class RecorderNode(LiveNode):
 
     def __init__(self) -> None:
         super().__init__("recorder")
-        self.file: RecordingFile | None = None
+        self.writer: RecordingWriter | None = None
         self.topics: RecordedTopics | None = None
         self.declare(RECORDER)
         self._order: SourceOrder[Received] = SourceOrder(HORIZON)
-        self._simulated = SimulatedTime()
-        self._flushed = time.monotonic()
-        as_bag = self.values["form"] == "rosbag2"
-        self._series = RecordingSeries(self.values["output"], as_bag, datetime.now())
+        is_simulated = bool(self.get_parameter("use_sim_time").value)
         self._values_topic = Topic(f"{self.get_fully_qualified_name()}/parameters", type_name(String))
         self._parameter_values = ParameterValues(self, self.values["parameters_of"], self._take_values)
+        series = RecordingSeries(self.values["output"], self.values["form"] == "rosbag2", datetime.now())
+        self.writer = RecordingWriter(series)
         self._begin()
-        wanted = dict.fromkeys([*self.values["topics"], *([CLOCK] if self._is_simulated() else [])])
-        self.topics = RecordedTopics(self, wanted, self._take)
+        self.topics = RecordedTopics(self, dict.fromkeys([*self.values["topics"], *([CLOCK] if is_simulated else [])]))
+        self._time = RecordedTime(self, is_simulated)
+        self._receiver = Receiver(self.topics)
         self.create_service(SetBool, "~/record", self._on_record)
         self.create_service(Trigger, "~/split", self._on_split)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -60,88 +60,116 @@ class RecorderNode(LiveNode):
         self.open_parameters()
 
     def counters(self) -> Mapping[str, object]:
-        """What is recorded where, and what was lost."""
-        lost = sum(self.topics.lost.values()) if self.topics else 0
-        path = str(self.file.path) if self.file else "not recording"
-        return {"file": path, "messages": self.file.messages if self.file else 0, "lost_messages": lost}
+        """What is recorded where, and what was lost, in all and by topic."""
+        file = self.writer.file if self.writer else None
+        losses = self.topics.losses() if self.topics else {}
+        return {
+            "file": str(file.path) if file else "not recording",
+            "messages": file.messages if file else 0,
+            "lost_messages": sum(lost for lost, _ in losses.values()),
+            **{f"lost_messages {name}": f"{lost} of {lost + got}" for name, (lost, got) in losses.items() if lost},
+            "unwritten_messages": self.writer.unwritten if self.writer else 0,
+        }
 
     def close(self) -> None:
-        """Write what has arrived and complete the file."""
-        self.topics.drain()
-        self._write(self._order.rest())
-        self._end()
+        """Write what has arrived and complete the file; InputError where the disk does not take it."""
+        self._receiver.stop()
+        self._time.leave()
+        if self.writer.file is not None:
+            print(self._end(), flush=True)
+        if self.writer.problem:
+            raise InputError(self.writer.problem)
 
     def _begin(self) -> None:
-        self.file = self._series.open()
+        """Go on in a new file; InputError, and the old one goes on, where there can be none."""
+        self.writer.begin(self.topics.losses() if self.topics else {})
+        if self.topics:
+            self.topics.count_anew()
         self._parameter_values.want()
-        self.get_logger().info(f"recording {self.file.path}")
+        self.diagnostics.end("write")
+        self.diagnostics.end("lost")
+        self.get_logger().info(f"recording {self.writer.file.path}")
 
-    def _end(self) -> None:
-        if self.file is not None:
-            self.file, finished = None, self.file
-            self._series.finish()
-            print(f"{finished.path}: {finished.messages} messages", flush=True)
+    def _end(self) -> str:
+        """Write what has arrived, complete the file and say what is in it."""
+        self._drain()
+        path, messages = self.writer.file.path, self.writer.file.messages
+        losses = self.topics.losses()
+        self.writer.end(losses)
+        lost = sum(lost for lost, _ in losses.values())
+        return f"{self.writer.problem or path}: {messages} messages, {lost} lost"
 
-    def _take(self, received: Received) -> None:
-        sent = min(received.sent, received.arrived)
-        if received.topic.name == CLOCK and self._is_simulated():
-            reading = deserialize_message(received.data, ClockMessage)
-            self._simulated.reading(sent, messages.nanoseconds(reading.clock))
-        self._order.put(sent, received)
+    def _drain(self) -> None:
+        self._receiver.turn()
+        self._take()
+        self._write(self._order.rest())
+
+    def _take(self) -> None:
+        for received in self._receiver.received():
+            sent = min(received.sent, received.arrived)
+            self._time.take(received, sent)
+            self._order.put(sent, received, received.taken)
 
     def _take_values(self, text: str) -> None:
         now = time.time_ns()
-        self._take(Received(self._values_topic, serialize_message(String(data=text)), 0, now, now))
+        self._order.put(now, Received(self._values_topic, serialize_message(String(data=text)), 0, now, now, now))
 
     def _look(self) -> None:
         self.topics.look()
         self._parameter_values.ask()
+        self._report()
+        if self.writer.is_due_again():
+            self._try_again()
+
+    def _report(self) -> None:
+        losses = {name: lost for name, (lost, _) in self.topics.losses().items() if lost}
+        if losses:
+            text = ", ".join(f"{name} {lost}" for name, lost in sorted(losses.items()))
+            self.diagnostics.begin("lost", WARN, f"messages lost on the way to the recorder: {text}")
+
+    def _try_again(self) -> None:
+        try:
+            self._begin()
+        except InputError as error:
+            self.get_logger().debug(str(error))
 
     def _write_due(self) -> None:
+        self._take()
         self._write(self._order.due(time.time_ns()))
+        self._time.tell()
 
     def _write(self, received: list[Received]) -> None:
-        if self.file is None:
-            return
-        try:
-            for each in received:
-                published, logged = self._times(each)
-                self.file.add(each.topic, each.data, each.sequence, published, logged)
-            if time.monotonic() - self._flushed > self.values["flush_interval"]:
-                self.file.flush()
-                self._flushed = time.monotonic()
-        except OSError as error:
-            self.file = None
-            self.diagnostics.begin("write", ERROR, f"recording ended: {error.strerror}")
-
-    def _times(self, received: Received) -> tuple[int, int]:
-        if not self._is_simulated():
-            return received.sent, received.arrived
-        sent = min(received.sent, received.arrived)
-        return self._simulated.at(sent), self._simulated.at(sent)
-
-    def _is_simulated(self) -> bool:
-        return bool(self.get_parameter("use_sim_time").value)
+        timed = [(each, *self._time.of(each)) for each in received]
+        if not self.writer.write(timed, self.values["flush_interval"]):
+            self.diagnostics.begin("write", ERROR, self.writer.problem)
 
     def _on_record(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
-            if request.data and self.file is None:
+            if request.data and self.writer.file is None:
                 self._begin()
-            elif not request.data:
-                self.close()
-            response.success, response.message = True, self.counters()["file"]
+            elif not request.data and self.writer.file is not None:
+                response.message = self._end()
+            if not request.data:
+                self._rest()
+            response.success = not self.writer.problem
+            response.message = response.message or self.counters()["file"]
         except InputError as error:
             response.success, response.message = False, str(error)
         return response
 
+    def _rest(self) -> None:
+        """Not to record is what was asked for: no file is missing."""
+        self.writer.rest()
+        self.diagnostics.end("write")
+
     def _on_split(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        if self.file is None:
-            response.success, response.message = False, "not recording"
+        if self.writer.file is None:
+            response.success, response.message = False, self.writer.problem or "not recording"
             return response
         try:
-            self.close()
+            self._drain()
             self._begin()
-            response.success, response.message = True, str(self.file.path)
+            response.success, response.message = True, str(self.writer.file.path)
         except InputError as error:
             response.success, response.message = False, str(error)
         return response

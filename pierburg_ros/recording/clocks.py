@@ -17,7 +17,7 @@ MEASURED = ("hall_voltage", "joint_states")
 STAMPED_BESIDE = ("hall_voltage", "applied_duty")
 """Topics that the plant publishes once for each `joint_states`, so that they share its stamp."""
 SHARED = 0.9
-"""Least share of sequence numbers that two topics of one tick have in common."""
+"""Least share of the range of sequence numbers that two topics of one tick have in common."""
 TOLERANCE = 0.1
 """Largest typical difference [s] between two channels: above a delay on the way, below a wrong clock."""
 LATCHED = 86_400.0
@@ -108,8 +108,9 @@ def matched(messages: Messages, stamped: Messages, stamps: Integers) -> tuple[ND
     """
     if numbered(messages) and numbered(stamped):
         kept = (messages.sequence >= stamped.sequence[0]) & (messages.sequence <= stamped.sequence[-1])
-        shared = np.isin(messages.sequence, stamped.sequence, assume_unique=True).sum()
-        if shared < SHARED * max(len(messages), len(stamped)):
+        ranges = [(each.sequence[0], each.sequence[-1]) for each in (messages, stamped)]
+        shared = min(last for _, last in ranges) - max(first for first, _ in ranges)
+        if shared < SHARED * max(last - first for first, last in ranges):
             return None
         since = np.interp(messages.sequence[kept], stamped.sequence, stamps - stamps[0])
         return kept, stamps[0] + np.round(since).astype(np.int64)

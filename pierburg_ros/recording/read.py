@@ -16,6 +16,7 @@ from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.csv_table import read_csv
 from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.formats.rosbag2 import read_bag
+from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
 from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
 
@@ -67,7 +68,25 @@ def assemble(cast: Cast, choice: str | None) -> Recording:
     quantity = "hall_voltage" if found["measured"][0] == "hall_voltage" else "position"
     first = channels.pop("measured")
     sources = dict.fromkeys(timed[signal].source for signal in ("measured", "duty"))
-    return Recording(name, quantity, first.time, first.values, **channels, time_source=", ".join(sources))
+    losses = lost({**channels, "measured": first}, timed, quantity)
+    return Recording(
+        name, quantity, first.time, first.values, **channels, time_source=", ".join(sources), losses=losses
+    )
+
+
+def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], quantity: str) -> tuple[Loss, ...]:
+    """What is missing in each signal: by its numbers, or else by pauses in what was measured and in the input."""
+    found = []
+    breaks = pauses(channels["measured"].time)
+    for signal, channel in channels.items():
+        name = quantity if signal == "measured" else signal
+        sequence = timed[signal].messages.sequence[timed[signal].kept]
+        if are_numbered(sequence):
+            found.append(numbered_loss(name, channel.time, sequence))
+        elif signal in ("measured", "duty"):
+            spans = breaks if signal == "measured" else silences(channel.time, channel.values, breaks)
+            found.append(Loss(name, None, channel.time.size, spans))
+    return tuple(loss for loss in found if loss.spans)
 
 
 def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.recording.loss import Loss, Span, merged, sentence, within
 
 Samples = NDArray[np.float64]
 UNITS = {"hall_voltage": "V", "position": "rad"}
@@ -46,7 +47,7 @@ class Recording:
     position [rad]. The channels are signed duty [1], supply voltage [V], temperature [degC], bridge enabled
     [0 or 1] and setpoints [rad]; what was recorded before the first sample has a negative time. `time_source`
     says which clock the times come from. A sample that was sent again, with the same time and value as in lockstep
-    without a reply, counts once.
+    without a reply, counts once. `losses` tells of messages that are known to be missing.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Recording:
     enabled: Channel | None = None
     setpoints: Channel | None = None
     time_source: str = "stamp"
+    losses: tuple[Loss, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
@@ -101,6 +103,21 @@ class Recording:
         """Time from the first to the last measured sample [s]."""
         return float(self.time[-1] - self.time[0])
 
+    @property
+    def unknown_input(self) -> tuple[Span, ...]:
+        """Spans [s] in which the duty is not known, because messages are missing; in order, without overlap."""
+        return merged(tuple(span for loss in self.losses if loss.signal == "duty" for span in loss.spans))
+
+    @property
+    def missing_samples(self) -> tuple[Span, ...]:
+        """Spans [s] between two measured samples in which others are missing."""
+        return merged(tuple(span for loss in self.losses if loss.signal == self.quantity for span in loss.spans))
+
+    @property
+    def warning(self) -> str:
+        """What to say first of this recording if messages are missing, or nothing."""
+        return sentence(self.losses, self.unknown_input)
+
     def select(self, start: float, end: float) -> Recording:
         """The samples within [start, end] [s] and what acts on them; times count from the first of them."""
         inside = (self.time >= start) & (self.time <= end)
@@ -114,7 +131,8 @@ class Recording:
             if (channel := getattr(self, role)) is not None
         }
         time, measured = self.time[inside] - origin, self.measured[inside]
-        return replace(self, time=time, measured=measured, duty=duty, **others)
+        losses = within(self.losses, float(origin), float(last))
+        return replace(self, time=time, measured=measured, duty=duty, losses=losses, **others)
 
 
 def check_signal(what: str, time: Samples, values: Samples) -> None:

@@ -12,12 +12,12 @@ def test_what_was_written_is_read_again(tmp_path):
     path = tmp_path / "controller.yaml"
     path.write_text(parameter_file(settings, ["tuned for speed"]))
     assert read_parameter_file(path) == settings
-    assert path.read_text().startswith("# tuned for speed\ncontroller:\n  ros__parameters:\n")
+    assert path.read_text().startswith("# tuned for speed\n/**:\n  ros__parameters:\n")
 
 
 def test_every_value_is_a_double_and_says_what_it_is():
     text = parameter_file(Settings(proportional_gain=3.0, derivative_support=1e9))
-    values = yaml.safe_load(text)["controller"]["ros__parameters"]
+    values = yaml.safe_load(text)["/**"]["ros__parameters"]
     assert all(type(value) is float for value in values.values())
     for setting in SETTINGS:
         assert f"# {setting.unit}, {setting.meaning}" in text

@@ -45,7 +45,7 @@ def played(graph, setpoints):
 
 @pytest.mark.ros
 def test_a_run_repeats_bit_by_bit(domain, tmp_path):
-    from ros_graph import Graph
+    from support.ros_graph import Graph
 
     setpoints = tmp_path / "setpoints.csv"
     setpoints.write_text("time,setpoint\n0,0.2\n0.3,0.9\n0.6,0.4\n")

@@ -4,20 +4,16 @@ from pierburg_ros.parameter import Parameter as Declaration
 
 FLOAT64 = "std_msgs/msg/Float64"
 BOOL = "std_msgs/msg/Bool"
-PARAMETER = "rcl_interfaces/msg/Parameter"
 DEFAULT_TOPICS = {
     "hall_voltage": FLOAT64,
     "applied_duty": FLOAT64,
     "joint_states": "sensor_msgs/msg/JointState",
     "duty": FLOAT64,
     "active_setpoint": FLOAT64,
-    "setpoints": FLOAT64,
     "controller/error": FLOAT64,
     "controller/pi_output": FLOAT64,
     "controller/derivative": FLOAT64,
     "controller/saturated": BOOL,
-    "plant/set_parameter": PARAMETER,
-    "controller/set_parameter": PARAMETER,
     "supply_voltage": FLOAT64,
     "temperature": FLOAT64,
     "enabled": BOOL,
@@ -26,7 +22,11 @@ DEFAULT_TOPICS = {
     "/rosout": "rcl_interfaces/msg/Log",
     "/clock": "rosgraph_msgs/msg/Clock",
 }
-"""Topics and their types, known beforehand so that nothing is missed while the graph is being discovered."""
+"""Topics and their types, known beforehand so that nothing is missed while the graph is being discovered.
+
+Commands (`setpoints`, `~/set_parameter`) are not among them: `ros2 topic pub --once` sends as soon as it knows one
+reader, and that one must be the node that obeys. What they did is in `active_setpoint` and `/parameter_events`.
+"""
 
 RECORDER = (
     Declaration(

@@ -10,6 +10,12 @@ from typing import Generic, TypeVar
 Item = TypeVar("Item")
 KEPT = 10_000
 """Clock readings kept for looking up times: ten seconds at 1 kHz."""
+LONGEST = 20.0
+"""Longest time [s] that anything is held back; older than that on arrival is the past of a latched topic."""
+MEMORY = 2.0
+"""Time [s] for which a late arrival keeps the others waiting; one round of repair takes well below a second."""
+MARGIN = 1.5
+"""What is held back beyond the latest arrival: the next one may be later still."""
 
 
 @dataclass(order=True)
@@ -20,23 +26,36 @@ class _Waiting(Generic[Item]):
 
 
 class SourceOrder(Generic[Item]):
-    """Holds items back for a moment and gives them out in the order of their sending."""
+    """Holds items back for a moment and gives them out in the order of their sending.
+
+    After a stall all that was sent meanwhile arrives late, one topic after another. The moment then becomes longer
+    than the latest of them took, so that the topics are in order among each other too.
+    """
 
     def __init__(self, horizon: float) -> None:
-        """`horizon` [s]: how long an item is held back."""
+        """`horizon` [s]: how long an item is held back while none is late."""
         self._horizon = round(horizon * 1e9)
         self._waiting: list[_Waiting[Item]] = []
         self._arrivals = 0
+        self._late = 0
+        self._late_at = 0
 
-    def put(self, sent: int, item: Item) -> None:
-        """Add an item sent at `sent` [ns]."""
+    def put(self, sent: int, item: Item, taken: int | None = None) -> None:
+        """Add an item sent at `sent` and taken at `taken` [ns]."""
         self._arrivals += 1
+        age = (sent if taken is None else taken) - sent
+        if self._horizon < age * MARGIN < LONGEST * 1e9:
+            now = sent + age
+            self._late = max(age, self._late if now - self._late_at < MEMORY * 1e9 else 0)
+            self._late_at = now
         heapq.heappush(self._waiting, _Waiting(sent, self._arrivals, item))
 
     def due(self, now: int) -> list[Item]:
         """Items sent before the horizon, `now` [ns] being the present."""
+        late = self._late if now - self._late_at < MEMORY * 1e9 else 0
+        limit = now - max(self._horizon, round(MARGIN * late))
         found = []
-        while self._waiting and self._waiting[0].sent <= now - self._horizon:
+        while self._waiting and self._waiting[0].sent <= limit:
             found.append(heapq.heappop(self._waiting).item)
         return found
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples, check_signal
 from pierburg_ros.recording.roles import check_names
 
@@ -56,8 +57,20 @@ def read_csv(path: Path, choice: str | None, named: Mapping[str, str]) -> Record
         if any(table.get(columns[signal], ()))
     }
     inputs = shifted(channel(path, time, columns[duty], table), origin)
+    breaks = pauses(measured.time - origin)
+    losses = (
+        Loss(quantity, None, measured.time.size, breaks),
+        Loss("duty", None, inputs.time.size, silences(inputs.time, inputs.values, breaks)),
+    )
     return Recording(
-        path.name, quantity, measured.time - origin, measured.values, inputs, time_source="column", **acting
+        path.name,
+        quantity,
+        measured.time - origin,
+        measured.values,
+        inputs,
+        time_source="column",
+        losses=tuple(loss for loss in losses if loss.spans),
+        **acting,
     )
 
 

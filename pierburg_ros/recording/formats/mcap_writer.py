@@ -82,6 +82,10 @@ class McapWriter:
         """Put everything written so far on disk, whatever the chunk's size."""
         self.writer.flush()  # type: ignore[no-untyped-call]
 
+    def note(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record, which stands beside the messages and which readers of messages pass over."""
+        self.writer.add_metadata(name, dict(values))
+
     def finish(self) -> None:
         """Write the end of the file, with its index."""
         self.writer.finish()  # type: ignore[no-untyped-call]

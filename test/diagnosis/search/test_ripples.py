@@ -3,13 +3,13 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording, recording_in_closed_loop
-
 from pierburg_ros.diagnosis.evidence.data import evidence_of
-from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search.fits import Search
 from pierburg_ros.diagnosis.search.ripples import RIPPLES, through_stretches
+from support.recordings import NOMINAL, PIERBURG, recording, recording_in_closed_loop
+
+from pierburg_ros.diagnosis.search.candidates import starts_of
 
 OVER_ANGLE, IN_TIME = RIPPLES
 COGGING, PULSATION = OVER_ANGLE.variant, IN_TIME.variant

@@ -1,0 +1,57 @@
+"""What the launch file starts, as processes with the arguments that it passes."""
+
+import sys
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from support.launch_file import command_line, launched
+
+from pierburg_ros.recording import read_recording
+
+pytestmark = pytest.mark.ros
+
+
+def start(graph, **given):
+    """The processes of one launch."""
+    _, nodes = launched(**given)
+    codes = [f"from pierburg_ros.nodes.{node['executable']} import main; main()" for node in nodes]
+    arguments = [command_line(node, graph.folder) for node in nodes]
+    return [graph.run([sys.executable, "-c", *each]) for each in map(lambda c, a: [c, *a], codes, arguments)]
+
+
+def test_two_actuators_in_two_namespaces_keep_their_own_joints_setpoints_and_recordings(graph):
+    wanted = {"left": 0.4, "right": 1.2}
+    joints = {side: graph.watch(f"/{side}/joint_states", JointState) for side in wanted}
+    duties = {side: graph.watch(f"/{side}/active_setpoint", Float64) for side in wanted}
+    processes = {
+        side: start(graph, namespace=side, setpoint=str(angle), output=f"{side}.mcap") for side, angle in wanted.items()
+    }
+
+    def arrived(side, angle):
+        return joints[side] and abs(joints[side][-1].position[0] - angle) < 0.05
+
+    graph.until(lambda: all(arrived(*each) for each in wanted.items()), "both shafts at their setpoints")
+    for side, angle in wanted.items():
+        assert joints[side][-1].name == [f"{side}_swirl_shaft"]
+        assert duties[side][-1].data == angle
+        for process in reversed(processes[side]):
+            status, output = graph.ended(process)
+            assert status == 0
+            assert "says nothing to" not in output
+            assert "has no parameter" not in output
+        recording = read_recording(graph.folder / f"{side}.mcap")
+        assert recording.losses == ()
+        assert recording.quantity == "hall_voltage"
+
+
+def test_a_file_that_says_nothing_to_a_node_is_named(graph):
+    file = graph.folder / "mine.yaml"
+    file.write_text("plant:\n  ros__parameters:\n    rate: 200.0\n")
+    process = graph.start("plant", arguments=("-r", "__ns:=/left", "--params-file", str(file)))
+    assert graph.get("/left/plant", "rate") == [500.0]
+    _, output = graph.ended(process)
+    assert "mine.yaml says nothing to /left/plant (it names /plant)" in output
