@@ -12,11 +12,12 @@ ALLOWED = {
     "errors": set(),
     "kernel": set(),
     "processes": {"errors"},
+    "intake": {"errors"},
     "effects": {"errors", "kernel"},
-    "actuators": {"errors", "kernel", "effects"},
-    "plant": {"errors", "kernel", "effects", "actuators"},
-    "control": {"errors", "kernel"},
-    "recording": {"errors", "kernel"},
+    "actuators": {"errors", "kernel", "intake", "effects"},
+    "plant": {"errors", "kernel", "intake", "effects", "actuators"},
+    "control": {"errors", "kernel", "intake"},
+    "recording": {"errors", "kernel", "intake"},
 }
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
