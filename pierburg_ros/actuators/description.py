@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from pierburg_ros.actuators.actuator import UNITS, Actuator, Load, NominalParameter, Quantity
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.errors import InputError, printable
+from pierburg_ros.errors import InputError
 from pierburg_ros.intake import parsed, reading, text_of
 
 SHIPPED = ("pierburg", "xl330")

@@ -1,4 +1,4 @@
-"""The gate that every input passes: kind of file, size, depth, counts and magnitudes, and one line where it is refused."""
+"""The gate that every input passes: kind of file, size, depth, counts, magnitudes; what is refused is one line."""
 
 from pierburg_ros.intake.bounds import check_count, check_magnitude
 from pierburg_ros.intake.gate import opened, reading, text_of

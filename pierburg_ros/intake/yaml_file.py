@@ -80,7 +80,8 @@ class BoundedLoader(yaml.SafeLoader):
         before, self.depth = self.count, self.depth + 1
         if self.depth > DEEPEST:
             raise refused(event, "deeply nested lists", f"at most {DEEPEST} levels")
-        node = super().compose_node(parent, index)  # type: ignore[no-untyped-call]
+        node = super().compose_node(parent, index)
+        assert node is not None  # an event that opens a node was seen
         if alias and id(node) not in self.counted:
             raise refused(event, "a value that contains itself", "values that end")
         self.count += self.counted[id(node)] if alias else 1
@@ -89,7 +90,7 @@ class BoundedLoader(yaml.SafeLoader):
             raise refused(event, "too many values", f"at most {MOST_NODES:,}")
         if not alias:
             self.counted[id(node)] = self.count - before
-        return node  # type: ignore[no-any-return]
+        return node
 
 
 def refused(event: Any, found: str, expected: str) -> yaml.YAMLError:

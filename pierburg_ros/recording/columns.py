@@ -42,9 +42,7 @@ class Columns:
         """The numbers of one column."""
         if column in self.wrong:
             row, cell = self.wrong[column]
-            raise InputError(
-                f"{self.name} has {cell!r} as {column} in row {row}, expected a finite number. Repair it."
-            )
+            raise InputError(f"{self.name} has {cell!r} as {column} in row {row}, expected a finite number. Repair it.")
         return np.frombuffer(self.cells[column], np.float64)
 
     def listed(self) -> str:

@@ -23,8 +23,8 @@ SOURCES = ("stamp", "clock", "publish", "log")
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
 OPTIONAL = ("supply_voltage", "temperature", "enabled", "setpoints")
 LONGEST = 7 * 86_400.0
-"""Time [s] that a recording may span: a week. Effects that act all the time are simulated in steps of 2 ms, and a week of
-them takes about two minutes."""
+"""Time [s] that a recording may span: a week. What acts all the time is simulated in steps of 2 ms, and a week of them
+takes about two minutes."""
 SPARSEST = 60.0
 """Time [s] for each sample at most: no motion of an actuator shows in less than one sample a minute."""
 ACTING = ("supply_voltage", "enabled")

@@ -7,7 +7,6 @@ import tempfile
 from pathlib import Path
 
 import zstandard
-
 from fuzzing.mcap_input import FLOAT64, mcap, payload, wrong_payload
 from fuzzing.mutations import mutated_bytes, mutated_text
 from fuzzing.values import NAMES, integer
@@ -36,9 +35,13 @@ METADATA = """rosbag2_bagfile_information:
 TABLES = """
 CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, serialization_format TEXT NOT NULL,
                     offered_qos_profiles TEXT NOT NULL);
-CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, data BLOB NOT NULL);
+CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL,
+                      data BLOB NOT NULL);
 """
-ENDLESS = "CREATE VIEW messages AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x AS id, 1 AS topic_id, x AS timestamp, x'00010000' AS data FROM n"
+ENDLESS = """
+CREATE VIEW messages AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)
+SELECT x AS id, 1 AS topic_id, x AS timestamp, x'00010000' AS data FROM n
+"""
 STATEMENTS = (
     "DROP TABLE topics",
     "DROP TABLE messages",
@@ -96,9 +99,7 @@ def bag(chance: random.Random) -> Files:
     if mode == "FILE":
         name += ".zstd"
         content = packed(chance, content)
-    text = METADATA.format(
-        storage=storage, name=name, kind=FLOAT64, packing="zstd" if mode else "", mode=mode
-    )
+    text = METADATA.format(storage=storage, name=name, kind=FLOAT64, packing="zstd" if mode else "", mode=mode)
     if chance.random() < 0.6:
         text = mutated_text(chance, text)
     return {"bag/metadata.yaml": text.encode("utf-8", "surrogateescape"), f"bag/{name}": content}

@@ -6,7 +6,6 @@ import zlib
 
 import lz4.frame
 import zstandard
-
 from fuzzing.mutations import mutated_bytes
 from fuzzing.values import NAMES, integer, number
 

@@ -131,4 +131,14 @@ def bytes_of_text(chance: random.Random, text: str) -> str:
     return mutated_bytes(chance, text.encode("utf-8", "surrogatepass")).decode("utf-8", "surrogateescape")
 
 
-TEXT = (other_word, other_word, other_word, other_word, lines_changed, lines_changed, inserted_text, nested, bytes_of_text)
+TEXT = (
+    other_word,
+    other_word,
+    other_word,
+    other_word,
+    lines_changed,
+    lines_changed,
+    inserted_text,
+    nested,
+    bytes_of_text,
+)

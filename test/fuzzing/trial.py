@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from fuzzing import bag_input, mcap_input, table_input, yaml_input
+
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.errors import InputError

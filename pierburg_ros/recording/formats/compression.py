@@ -57,6 +57,8 @@ def unpack_file(source: BinaryIO, target: BinaryIO, most: int, name: str) -> Non
         while block := reader.read(BLOCK):
             target.write(block)
             if target.tell() > most:
-                raise InputError(f"{name} unpacks to more than {most >> 20} MiB, expected a recording. Unpack it first.")
+                raise InputError(
+                    f"{name} unpacks to more than {most >> 20} MiB, expected a recording. Unpack it first."
+                )
     except zstandard.ZstdError as error:
         raise InputError(f"{name} is damaged ({error}), expected a file packed with zstd. Record again.") from error

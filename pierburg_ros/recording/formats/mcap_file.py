@@ -121,7 +121,7 @@ class McapRecords:
         while start < len(records):
             opcode, length = RECORD.unpack_from(records, start)
             start += RECORD.size
-            if opcode not in IN_CHUNK and opcode < PRIVATE or start + length > len(records):
+            if (opcode not in IN_CHUNK and opcode < PRIVATE) or start + length > len(records):
                 raise Damaged(f"a record of type {opcode} and {length} bytes in a chunk")
             self.record(opcode, records[start : start + length])
             start += length

@@ -80,8 +80,9 @@ def listed_in(folder: Path) -> Listed:
             " directory. Name one of its files."
         )
     content = read_yaml(metadata, "the metadata of a rosbag2 recording").content
-    information = content.get("rosbag2_bagfile_information") if isinstance(content, dict) else None
-    names = information.get("relative_file_paths") if isinstance(information, dict) else None
+    given = content.get("rosbag2_bagfile_information") if isinstance(content, dict) else None
+    information: dict[str, Any] = given if isinstance(given, dict) else {}
+    names = information.get("relative_file_paths")
     if not names or not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InputError(
             f"{folder.name}/metadata.yaml does not list the files of a rosbag2 recording."

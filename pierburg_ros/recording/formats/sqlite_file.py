@@ -18,6 +18,8 @@ NEEDED = {
     "messages": {"topic_id", "timestamp", "data"},
 }
 """Columns of the two tables that are read."""
+LENGTH_LIMIT = 0
+"""SQLITE_LIMIT_LENGTH, the largest text or bytes that a value may have."""
 LEAST_ROW = 8
 """Bytes that a message takes in the file at least; a file that holds more rows lists the same pages again and again."""
 
@@ -44,7 +46,7 @@ def read_sqlite(path: Path, bag: Bag) -> None:
 def take(database: sqlite3.Connection, bag: Bag, size: int) -> None:
     """Add the messages of a file of `size` bytes that is open."""
     if hasattr(database, "setlimit"):  # from Python 3.11 on
-        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, max(size, 1 << 16))
+        database.setlimit(LENGTH_LIMIT, max(size, 1 << 16))
     for table, columns in NEEDED.items():
         check_table(database, bag.name, table, columns)
     topics = declared(database, bag)
