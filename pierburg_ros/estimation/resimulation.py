@@ -11,6 +11,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.start import Start, scale_of
 from pierburg_ros.plant import Inputs, Model, simulate_many
+from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording.recording import Recording
 
 Signal = NDArray[np.float64]
@@ -75,5 +76,7 @@ class Resimulation:
 
 
 def resimulate(model: Model, recording: Recording) -> Signal:
-    """What `model` would have measured over `recording`, in its unit, shape (samples,)."""
-    return np.asarray(Resimulation(recording, model.actuator).simulated([model])[0])
+    """What `model` would have measured over `recording`, in its unit, shape (samples,); InputError where it cannot."""
+    simulated = np.asarray(Resimulation(recording, model.actuator).simulated([model])[0])
+    refuse_unsimulated(model, simulated, recording.time)
+    return simulated

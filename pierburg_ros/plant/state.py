@@ -56,6 +56,7 @@ STATE = np.dtype(
         ("drive", np.float64),  # N.m, motor torque at rest, at the shaft
         ("braking", np.float64),  # N.m.s/rad, by the back-EMF
         ("step", np.float64),  # s, internal step that was last accepted
+        ("events", np.float64),  # of late, beyond those that may go on
         ("piece", PIECE),  # the linear piece last computed
         ("waiting", np.int64),  # duty changes under way
         ("first", np.int64),
@@ -94,6 +95,7 @@ def place(p, s, angle, velocity):
     s.voltage = s.drive = 0.0
     s.resistance = s.braking = 0.0
     s.step = 1.0
+    s.events = 0.0
     s.piece.order = 0
     s.waiting = s.first = 0
     if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
