@@ -61,6 +61,7 @@ setup(
         "PyYAML",
         "threadpoolctl",
         "zstandard",
+        "lz4",
     ],
     extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "benchmarks": ["mujoco"]},
     entry_points={

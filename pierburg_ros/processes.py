@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import random
 import signal
@@ -15,6 +16,8 @@ from typing import IO
 
 DOMAINS = range(1, 100)
 """ROS domain ids whose ports stay clear of those that Linux hands out itself."""
+ON_PARENTS_DEATH = 1
+"""PR_SET_PDEATHSIG of prctl(2)."""
 PATIENCE = 30.0
 """Time [s] that a node has to end after it was told to."""
 
@@ -48,10 +51,22 @@ def start_node(
 ) -> subprocess.Popen[bytes]:
     """The process of a node, started with parameters; `output` takes what it prints."""
     given = [word for key, value in parameters.items() for word in ("-p", f"{key}:={ros_text(value)}")]
-    code = f"from pierburg_ros.nodes.{name} import main; main()"
+    code = (
+        f"from pierburg_ros.processes import end_with_parent; end_with_parent({os.getpid()});"
+        f"from pierburg_ros.nodes.{name} import main; main()"
+    )
     command = [sys.executable, "-c", code, "--ros-args", *given]
     variables = {**os.environ, **environment}
     return subprocess.Popen(command, env=variables, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def end_with_parent(parent: int, told: int = signal.SIGINT) -> None:
+    """Have the system send `told` to this process when its parent ends, even by SIGKILL; Linux alone can do so."""
+    if sys.platform != "linux":
+        return
+    ctypes.CDLL(None).prctl(ON_PARENTS_DEATH, told)
+    if os.getppid() != parent:
+        raise SystemExit  # it has ended before it could be asked for
 
 
 def ros_text(value: object) -> str:

@@ -12,11 +12,12 @@ ALLOWED = {
     "kernel": set(),
     "parameter": {"errors"},
     "processes": {"errors"},
+    "intake": {"errors"},
     "effects": {"errors", "kernel", "parameter"},
-    "actuators": {"errors", "kernel", "parameter", "effects"},
-    "plant": {"errors", "kernel", "parameter", "effects", "actuators"},
-    "control": {"errors", "kernel", "parameter"},
-    "recording": {"errors", "kernel"},
+    "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
+    "plant": {"errors", "kernel", "intake", "parameter", "effects", "actuators"},
+    "control": {"errors", "kernel", "intake", "parameter"},
+    "recording": {"errors", "kernel", "intake"},
 }
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}

@@ -7,12 +7,12 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pierburg_ros.actuators.actuator import UNITS, Actuator, Load, NominalParameter, Quantity
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import parsed, reading, text_of
 
 SHIPPED = ("pierburg", "xl330")
 """Actuators that come with the package."""
@@ -29,8 +29,11 @@ _NEEDED = {"spring": {"spring_stiffness", "spring_preload"}, "pendulum": {"gravi
 _SENSOR = {"hall_voltage": {"hall_voltage_closed", "hall_voltage_open"}, "position": set[str]()}
 
 
+FORM = "an actuator description (YAML)"
+
+
 class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
 class _Parameter(_Strict):
@@ -80,18 +83,16 @@ class _Description(_Strict):
 
 def read_actuator(source: str | Path) -> Actuator:
     """The actuator called `source` (a shipped name, or the path of a YAML file); InputError where unusable."""
-    text, label = _text(source)
-    try:
-        content = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        line = getattr(getattr(error, "problem_mark", None), "line", 0) + 1
-        raise InputError(f"{label} is not YAML (line {line}). Compare it with examples/my_actuator.yaml.") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
-    try:
-        return _actuator(_Description.model_validate(content))
-    except ValidationError as error:
-        raise InputError(f"{label}: {_first_problem(error)}. Compare it with examples/my_actuator.yaml.") from None
+    with reading(source, FORM):
+        text, label = _text(source)
+        content = parsed(text, label, FORM).content
+        if not isinstance(content, dict):
+            raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
+        try:
+            return _actuator(_Description.model_validate(content))
+        except ValidationError as error:
+            problem = _first_problem(error)
+            raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
 
 
 def _text(source: str | Path) -> tuple[str, str]:
@@ -99,14 +100,11 @@ def _text(source: str | Path) -> tuple[str, str]:
         file = resources.files("pierburg_ros.actuators") / f"{source}.yaml"
         return file.read_text(encoding="utf-8"), f"actuator {source}"
     path = Path(source)
-    if not path.is_file():
+    if not path.exists():
         raise InputError(
             f"There is no actuator {source}; expected {' or '.join(SHIPPED)} or the path of a YAML description."
         )
-    try:
-        return path.read_text(encoding="utf-8"), path.name
-    except (OSError, UnicodeDecodeError):
-        raise InputError(f"{path.name} cannot be read as text; expected a YAML description.") from None
+    return text_of(path, FORM), path.name
 
 
 def _first_problem(error: ValidationError) -> str:

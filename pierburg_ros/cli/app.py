@@ -6,8 +6,11 @@ listing the commands loads and compiles nothing.
 
 from __future__ import annotations
 
+import signal
 import sys
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import version as installed_version
@@ -15,7 +18,11 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, one_line
+
+INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
+SIGNALS = {INTERRUPTED: "interrupted", TERMINATED: "terminated"}
+"""Exit statuses of a run that a signal has ended, as shells count them, and the line that says so."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +84,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     called = next((argument for argument in given if argument in COMMANDS), None)
     try:
-        status = application(called)(given, prog_name="pierburg", standalone_mode=False)
+        with terminable():
+            status = application(called)(given, prog_name="pierburg", standalone_mode=False)
     except InputError as error:
         refuse(str(error))
     except OSError as error:
@@ -85,18 +93,43 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
         refuse(f"{error.filename}: {error.strerror}.")
     except KeyboardInterrupt:
-        status = 130
+        status = INTERRUPTED
+    except Terminated:
+        status = TERMINATED
     except Exception as error:
         # Typer keeps its usage errors private; they are the ones that can format themselves.
         if not hasattr(error, "format_message"):
             raise
         refuse(f"{error.format_message()} See 'pierburg {called or ''} --help'.".replace("  ", " "))
+    if status in SIGNALS:
+        print(f"pierburg: {SIGNALS[status]}.", file=sys.stderr)
     raise SystemExit(status if isinstance(status, int) else 0)
+
+
+class Terminated(BaseException):
+    """SIGTERM has come: everything that is open is closed and cleared on the way out, as after Ctrl-C."""
+
+
+@contextmanager
+def terminable() -> Iterator[None]:
+    """Let SIGTERM end the block as an exception does; its default would leave what is half done."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(*_: object) -> None:
+        raise Terminated
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def refuse(reason: str) -> NoReturn:
     """Print `reason` as one line on stderr and end with exit status 2."""
-    print("pierburg:", " ".join(reason.split()), file=sys.stderr)
+    print("pierburg:", one_line(reason), file=sys.stderr)
     raise SystemExit(2)
 
 

@@ -17,6 +17,7 @@ from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.replay import summary, write_replay
 from pierburg_ros.cli.run import require_ros
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.comparison.compare import Comparison, compare
 from pierburg_ros.control import Controller
 from pierburg_ros.diagnosis.report.terminal import shown
@@ -46,7 +47,7 @@ def demo(
     second run the plant sticks and its spring has drifted; the diagnosis sees the recording alone.
     """
     require_ros()
-    console = Console()
+    console = terminal()
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
         console.print(replayed(folder, recording, Model.nominal(read_actuator("pierburg"))))

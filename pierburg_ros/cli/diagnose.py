@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.diagnosis.diagnose import Result
 from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
 from pierburg_ros.diagnosis.report.page import write_page, write_picture
 from pierburg_ros.diagnosis.report.terminal import shown
@@ -38,7 +39,7 @@ def diagnose(
     with output_folder(output) as folder:
         result = diagnosed_with_progress(measured, nominal)
         write_diagnosis(folder, result)
-    Console().print(
+    terminal().print(
         shown(result.diagnosis), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
     )
 
@@ -65,4 +66,4 @@ def _progress() -> Progress:
         TimeElapsedColumn(),
         TextColumn("{task.completed} tried; {task.description}"),
     )
-    return Progress(*columns, console=Console(stderr=True), transient=True)
+    return Progress(*columns, console=terminal(stderr=True), transient=True)

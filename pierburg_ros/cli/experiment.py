@@ -15,6 +15,7 @@ from pierburg_ros.cli.identify import starting_model
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.run import require_ros
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.control import Schedule, Settings
 from pierburg_ros.errors import InputError
@@ -79,7 +80,7 @@ def experiment(
         )
     if graph:
         require_ros()
-    base, console = starting_model(model, actuator), Console()
+    base, console = starting_model(model, actuator), terminal()
     with output_folder(output) as folder:
         if discriminate is not None:
             chosen = designed(folder, console, base, discriminate, duration or 60.0, rate, noise, limit)
@@ -88,7 +89,7 @@ def experiment(
         file = write_sequence(folder, chosen)
         recording = folder / f"{chosen.name}.mcap"
         if graph:
-            with Console(stderr=True).status(f"playing {chosen.name}, {chosen.time[-1]:.0f} s"):
+            with terminal(stderr=True).status(f"playing {chosen.name}, {chosen.time[-1]:.0f} s"):
                 play(chosen.kind, file, recording, simulated_time)
         elif discriminate is None or model is not None:
             simulate_sequence(recording, base, chosen, rate, noise, seed)
@@ -123,13 +124,13 @@ def designed(
 ) -> Sequence:
     """The sequence that best separates the explanations `names`, explained in words and a picture."""
     first, second = (explanation(name, base) for name in names)
-    with Console(stderr=True).status("designing the sequence") as status:
+    with terminal(stderr=True).status("designing the sequence") as status:
         design = design_sequence(first, second, duration, rate, noise or 1e-6, limit, status.update)
     labels = (Path(names[0]).stem, Path(names[1]).stem)
     text = words(design, labels, base.actuator.unit, noise)
     (folder / "explanation.txt").write_text(text + "\n", encoding="utf-8")
     write_picture(folder / "prediction.png", design, labels, base.actuator.quantity)
-    console.print(text, highlight=False, soft_wrap=True)
+    console.print(text, soft_wrap=True)
     return Sequence("duty", "discriminate", design.time, design.duty)
 
 

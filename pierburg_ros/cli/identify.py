@@ -13,6 +13,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.plot import write_picture
 from pierburg_ros.errors import InputError
@@ -49,7 +50,7 @@ def identify(
 
     Writes identification.json, model.yaml, identification.html and PNGs to the output folder.
     """
-    console = Console()
+    console = terminal()
     if audit:
         print_audit(console)
         if not recordings:
@@ -63,12 +64,12 @@ def identify(
     read = (read_recording(path, time=time, topics=topics_of(topic)) for path in recordings)
     measured = [from_standstill(recording, start) for recording in read]
     with output_folder(output) as folder:
-        with Console(stderr=True).status("fitting whole recordings"):
+        with terminal(stderr=True).status("fitting whole recordings"):
             found = identify_recordings(start, measured, free or (), fix or ())
         write_results(folder, found, measured)
     for recording in measured:
         if late := taken_up(recording):
-            console.print(f"{recording.name}{late}", highlight=False, soft_wrap=True)
+            console.print(f"{recording.name}{late}", soft_wrap=True)
     print_results(console, found, output)
 
 
@@ -83,7 +84,7 @@ def starting_model(model: Path | None, actuator: str | None) -> Model:
 def print_audit(console: Console) -> None:
     """Print what Table I implies about itself."""
     lines = audit_lines(audit_checks(Model.nominal(read_actuator("pierburg"))))
-    console.print("\n".join(lines), highlight=False, soft_wrap=True)
+    console.print("\n".join(lines), soft_wrap=True)
 
 
 def write_results(folder: Path, found: Identification, measured: list[Recording]) -> None:
@@ -104,7 +105,7 @@ def print_results(console: Console, found: Identification, output: Path) -> None
     for table in (lump_table(found), parameter_table(found), paper_table(found)):
         if table is not None:
             console.print(table)
-    console.print("\n".join(reasons(found)), highlight=False, soft_wrap=True)
+    console.print("\n".join(reasons(found)), soft_wrap=True)
     unit = found.model.actuator.unit
     console.print(
         f"RMSE {found.fitted.rmse:.4g} {unit} on all data, {found.validation_rmse:.4g} {unit} on unseen data;"

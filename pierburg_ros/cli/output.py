@@ -1,33 +1,159 @@
-"""Results on disk: a folder that is complete or not there."""
+"""Results on disk: whole or not there, whatever ends the run.
+
+A run works in a hidden folder beside its output and holds a lock on it, which the system takes back when the run ends,
+however it ends. So the next run can tell what a dead one left from what a living one needs.
+"""
 
 from __future__ import annotations
 
+import errno
+import fcntl
+import hashlib
 import os
 import shutil
+import signal
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import IO
 
 from pierburg_ros.errors import InputError
+
+HIDDEN = ".pierburg-"
+LOCK, PARTIAL, COMPLETE = "lock", "partial", "complete"
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system answers where a disk or a quota is full."""
 
 
 @contextmanager
 def output_folder(output: Path) -> Iterator[Path]:
-    """A temporary folder whose files appear in `output` when the block ends well, and nowhere when it fails.
+    """A hidden folder whose files appear in `output` when the block ends well, and nowhere when it fails.
 
-    Files of an earlier run keep their place in `output` unless a file of the same name replaces them.
+    Files of an earlier run keep their place in `output` unless a file of the same name replaces them. A second run
+    into the same output is refused.
     """
-    if output.exists() and not output.is_dir():
-        raise InputError(f"{output} is a file, expected a folder for the results. Choose another --output.")
-    present = next(parent for parent in output.resolve().parents if parent.exists())
-    folder = Path(tempfile.mkdtemp(prefix=f".{output.name}-", dir=present))
+    target = Path(os.path.abspath(output))
+    refuse_unusable(output, target)
+    made = [parent for parent in target.parents if not parent.exists()]
     try:
-        yield folder
-        output.mkdir(parents=True, exist_ok=True)
-        for source in sorted(path for path in folder.rglob("*") if path.is_file()):
-            target = output / source.relative_to(folder)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(source, target)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        clear_left(target.parent)
+        with claimed(target) as hidden:
+            (hidden / PARTIAL).mkdir()
+            yield hidden / PARTIAL
+            with undisturbed():
+                os.rename(hidden / PARTIAL, hidden / COMPLETE)
+                publish(hidden / COMPLETE, target)
+    except OSError as error:
+        raise full(output, error) from error
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        for parent in made:
+            with suppress(OSError):
+                parent.rmdir()
+
+
+def refuse_unusable(output: Path, target: Path) -> None:
+    """Refuse an output that cannot become a folder of results, before anything is computed."""
+    if not target.name:
+        raise InputError(f"{output} is the root of the file system, expected a folder of its own for the results.")
+    if target.is_symlink() and not target.exists():
+        raise InputError(f"{output} is a link that leads nowhere, expected a folder for the results. Remove it.")
+    if target.exists() and not target.is_dir():
+        raise InputError(f"{output} is a file, expected a folder for the results. Choose another --output.")
+    present = next(path for path in (target, *target.parents) if path.exists())
+    if not present.is_dir() or not os.access(present, os.W_OK | os.X_OK):
+        raise InputError(f"{output} cannot be written, since {present} cannot. Choose another --output.")
+
+
+def full(output: Path, error: OSError) -> OSError | InputError:
+    """What to raise for `error`: one line where the disk is full, else itself."""
+    if error.errno not in FULL:
+        return error
+    return InputError(f"{output}: {error.strerror}; nothing was written. Free some space, or choose another --output.")
+
+
+@contextmanager
+def claimed(target: Path) -> Iterator[Path]:
+    """The hidden folder of `target`, empty and held by this run alone; gone after the block."""
+    hidden = target.parent / f"{HIDDEN}{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:16]}"
+    lock = taken(hidden)
+    if lock is None:
+        raise InputError(f"Another run writes into {target}. Wait until it has ended, or choose another --output.")
+    try:
+        lock.write(os.fsencode(target.name))
+        lock.flush()
+        yield hidden
+    finally:
+        with undisturbed():
+            shutil.rmtree(hidden, ignore_errors=True)
+            lock.close()
+
+
+def taken(hidden: Path) -> IO[bytes] | None:
+    """The lock of a hidden folder, taken; None where a living run has it."""
+    while True:
+        hidden.mkdir(exist_ok=True)
+        try:
+            lock = (hidden / LOCK).open("ab+")
+        except FileNotFoundError:
+            continue  # its run has just ended and removed it
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.close()
+            return None
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(lock.fileno()), os.stat(hidden / LOCK)):
+                return lock
+        lock.close()
+
+
+def clear_left(parent: Path) -> None:
+    """Finish or remove what runs that were killed have left in `parent`."""
+    for hidden in parent.glob(f"{HIDDEN}*"):
+        lock = taken(hidden)
+        if lock is None:
+            continue
+        lock.seek(0)
+        name = os.fsdecode(lock.read())
+        if name and (hidden / COMPLETE).is_dir():
+            publish(hidden / COMPLETE, parent / Path(name).name)
+        shutil.rmtree(hidden, ignore_errors=True)
+        lock.close()
+
+
+def publish(complete: Path, target: Path) -> None:
+    """Move results to where they belong: at once where nothing is there, else file by file."""
+    if not target.exists():
+        os.rename(complete, target)
+        return
+    for source in sorted(path for path in complete.rglob("*") if path.is_file()):
+        place = target / source.relative_to(complete)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(source, place)
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Hold back SIGINT and SIGTERM until the block has ended."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file at once, or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise full(path, error) from error
+    finally:
+        Path(temporary).unlink(missing_ok=True)

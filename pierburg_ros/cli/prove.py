@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -19,6 +18,7 @@ from rich.progress import (
 from rich.table import Table
 
 from pierburg_ros.cli.run import require_ros
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.docket import DIAGNOSE
 from pierburg_ros.proof.graph import NotRecorded
@@ -51,17 +51,17 @@ def prove(
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=terminal(stderr=True),
     ) as progress:
         reporter = Reporter(progress, plan.size)
         command = None if generate_only else DIAGNOSE
         results = run.prove(output, plan, workers=workers, command=command, report=reporter)
     if generate_only:
-        Console().print(f"Recordings with their sealed labels in {output / 'trials'}")
+        terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
         return
     done = document.Run(results, plan)
     document.write(done, output, docs)
-    Console().print(summary(done), f"Results in {output}: proof.md, results.json")
+    terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
 
 
 class Reporter:

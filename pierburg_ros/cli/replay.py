@@ -8,12 +8,12 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.comparison.compare import Comparison, compare
 from pierburg_ros.comparison.plot import write_page, write_picture
 from pierburg_ros.recording import read_recording, write_recording
@@ -39,7 +39,7 @@ def replay(
     with output_folder(output) as folder:
         comparison = compare(chosen, measured)
         write_replay(folder, comparison)
-    Console().print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    terminal().print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
 
 
 def write_replay(folder: Path, comparison: Comparison) -> None:

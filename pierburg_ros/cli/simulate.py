@@ -11,10 +11,10 @@ from typing import Annotated
 import numpy as np
 import typer
 from numpy.typing import NDArray
-from rich.console import Console
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Settings, read_duty_file, read_parameter_file, read_setpoint_file
@@ -89,7 +89,7 @@ def simulate(
     with output_folder(output) as folder:
         write_recording(folder / FILE, signals)
     last = max(float(np.asarray(when)[-1]) for _, when, _ in signals.values())
-    Console().print(f"{last:.2f} s simulated in {took:.3f} s, written to {output / FILE}")
+    terminal().print(f"{last:.2f} s simulated in {took:.3f} s, written to {output / FILE}")
 
 
 def closed_loop(model: Model, settings: Settings, setpoints: Path, sampling: Sampling) -> dict[str, Signal]:

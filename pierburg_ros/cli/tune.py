@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from pierburg_ros.cli.output import write_whole
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
 from pierburg_ros.closed_loop.judgement import Judgement, judge
@@ -60,7 +59,7 @@ def tune(
     if compare is not None:
         document = compare.read_text(encoding="utf-8") if compare.exists() else ""
         write_whole(compare, insert(document, report(goal, judgements)))
-    Console().print(summary(goal, judgements), f"Parameters in {output}")
+    terminal().print(summary(goal, judgements), f"Parameters in {output}")
 
 
 def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
@@ -71,7 +70,7 @@ def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
         TimeElapsedColumn(),
         TextColumn("{task.fields[state]}"),
     )
-    with Progress(*shown, console=Console(stderr=True)) as progress:
+    with Progress(*shown, console=terminal(stderr=True)) as progress:
         name = task.design.name
         searching = progress.add_task(f"{name}: searching", total=generations, state="")
         judging = progress.add_task(f"{name}: judging", total=len(task.plants), state="")
@@ -103,16 +102,3 @@ def summary(goal: Goal, judgements: Sequence[Judgement]) -> Table:
             shares = each.shares(plant, goal).max(axis=0)
             table.add_row(plant, each.name, *(f"{share:.2f}" for share in shares))
     return table
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a file at once, or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)

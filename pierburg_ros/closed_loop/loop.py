@@ -18,6 +18,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.signal_path import advance
+from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.sensor import measured, quantised
 
@@ -83,9 +84,9 @@ def simulate_laps(
     plants = np.repeat(new_state(record, initial_angle), len(ticks))
     close = close_linear if control is linear else close_piflc
     close(record[0], plants, settings.record(), law.new_state(), ticks, 1.0 / rate)
-    if not np.all(np.isfinite(ticks["angle"])):
-        raise InputError("The model cannot be simulated with these values; bring them closer to nominal.")
     time = np.arange(setpoint.shape[1]) / rate
+    for lap in ticks["angle"]:
+        refuse_unsimulated(model, lap, time)
     return Run(time, **{name: ticks[name].copy() for name in ("setpoint", "hall_voltage", "duty", "angle")})
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.effects import STEP
-from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.plant.torques.sensor import quantised
 
 
@@ -25,8 +25,7 @@ def simulate_measurement(
     """
     analog = model.with_values({STEP: 0.0})
     measured = simulate(analog, inputs, sample_times, initial_angle)
+    refuse_unsimulated(model, measured, sample_times)
     measured += noise * np.random.default_rng(seed).standard_normal(measured.size)
-    if not np.all(np.isfinite(measured)):
-        raise InputError("The model cannot be simulated with these values; bring them closer to nominal.")
     record = model.record()[0]
     return np.array([quantised(record, value) for value in measured])

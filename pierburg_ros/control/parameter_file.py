@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from pierburg_ros.control.settings import SETTINGS, Settings
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import read_yaml, reading
 
 NODE = "controller"
 ANY = "/**"
 """Key of a node of any name in any namespace."""
+FORM = "a parameter file (YAML)"
 NODE_PARAMETERS = {"use_sim_time", "setpoint", "setpoint_file", "hall_timeout", "publish_internals"}
 """Parameters of the controller's node that are not settings of the control law."""
 
@@ -36,11 +36,8 @@ def ros_double(value: float) -> str:
 
 def read_parameter_file(path: str | Path) -> Settings:
     """The settings in a parameter file; what it does not name keeps its default."""
-    try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{path} cannot be read as a parameter file: {reason}.") from error
+    with reading(path, FORM):
+        content = read_yaml(path, FORM).content
     given = {name: value for name, value in parameters_of(content, path).items() if name not in NODE_PARAMETERS}
     try:
         return Settings().with_values(given)

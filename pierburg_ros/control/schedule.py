@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import csv
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import TextIOWrapper
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,11 @@ from numpy.typing import NDArray
 
 from pierburg_ros.control.setpoints import Setpoints
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import check_magnitude, opened, reading, rows
 
 Accept = Callable[[float], float]
+MOST_ENTRIES = 4_000_000
+"""Rows at most, one a sample of the longest run that is simulated."""
 
 
 @dataclass(frozen=True)
@@ -52,17 +56,22 @@ def accepted_duty(duty: float) -> float:
 
 def read_schedule(path: str | Path, quantity: str, accept: Accept) -> Schedule:
     """The schedule in a CSV with the header `time,<quantity>`; `accept` checks or corrects each value."""
-    try:
-        with Path(path).open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read as a {quantity} file: {error}.") from error
-    if not rows or [name.strip() for name in rows[0]] != ["time", quantity]:
-        raise InputError(f"{path} does not begin with the header time,{quantity}; add it above the first row.")
-    entries = [entry(row, quantity, accept, f"{path} line {line}") for line, row in enumerate(rows[1:], 2) if row]
+    form = f"a {quantity} file (CSV)"
+    with reading(path, form), opened(path, form) as binary:
+        file = TextIOWrapper(binary, encoding="utf-8-sig", newline="")
+        table = rows(file, str(path))
+        _, header = next(table, (0, []))
+        if [name.strip() for name in header] != ["time", quantity]:
+            raise InputError(f"{path} does not begin with the header time,{quantity}; add it above the first row.")
+        entries = array("d")
+        for line, row in table:
+            entries.extend(entry(row, quantity, accept, f"{path} line {line}"))
+            if len(entries) > 2 * MOST_ENTRIES:
+                raise InputError(f"{path} has more than {MOST_ENTRIES:,} rows; cut it into parts.")
     if not entries:
         raise InputError(f"{path} holds no {quantity}; add rows of time [s] and {quantity}.")
-    time, values = np.array(entries).T
+    time, values = np.array(entries).reshape(-1, 2).T
+    check_magnitude(f"{path}: time [s]", time)
     if np.any(np.diff(time) <= 0.0):
         raise InputError(f"{path}: the times do not rise from row to row; sort them and remove repeats.")
     return Schedule(time, values)

@@ -10,6 +10,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import InitialState, from_standstill
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
+from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
 from pierburg_ros.signals import Flags, Signal
 
@@ -123,5 +124,10 @@ def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> 
 
 
 def resimulated(model: Model, recording: Recording) -> Signal:
-    """What `model` would have measured over a `recording` from a standstill, in its unit, shape (samples,)."""
-    return run_of(recording, model).simulated(model)
+    """What `model` would have measured over a `recording` from a standstill, in its unit, shape (samples,).
+
+    InputError where it cannot be simulated.
+    """
+    simulated = run_of(recording, model).simulated(model)
+    refuse_unsimulated(model, simulated, recording.time)
+    return simulated

@@ -6,14 +6,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
+import numpy as np
 
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import check_magnitude, read_yaml, reading
 from pierburg_ros.plant.model import Model
 
 SECTIONS = ("actuator", "parameters", "effects", "residual_torque")
+FORM = "a model file (YAML)"
 
 
 def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None = None) -> Model:
@@ -21,30 +23,11 @@ def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None
     if isinstance(source, Mapping):
         return _model(dict(source), actuator, "model", lambda *_: "")
     path = Path(source)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        raise InputError(f"{path} cannot be read; expected a model file (YAML). Check the path.") from None
-    try:
-        content, tree = yaml.safe_load(text), yaml.compose(text)
-    except yaml.YAMLError as error:
-        line = getattr(getattr(error, "problem_mark", None), "line", 0) + 1
-        raise InputError(f"{path.name} line {line} is not YAML; expected a model file.") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{path.name} holds no model; expected {', '.join(SECTIONS)}.")
-    return _model(content, actuator, path.name, lambda *keys: _line(tree, keys))
-
-
-def _line(node: Any, keys: tuple[str, ...]) -> str:
-    """Where the value under nested `keys` stands, as ` line 7`."""
-    for key in keys:
-        if not isinstance(node, yaml.MappingNode):
-            break
-        for name, value in node.value:
-            if name.value == key:
-                node = value
-                break
-    return f" line {node.start_mark.line + 1}" if node is not None else ""
+    with reading(path, FORM):
+        document = read_yaml(path, FORM)
+        if not isinstance(document.content, dict):
+            raise InputError(f"{path.name} holds no model; expected {', '.join(SECTIONS)}.")
+        return _model(document.content, actuator, path.name, document.line)
 
 
 def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line: Any) -> Model:
@@ -54,6 +37,8 @@ def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line:
     if actuator is None:
         if "actuator" not in content:
             raise InputError(f"{label} names no actuator; expected for example `actuator: pierburg`.")
+        if not isinstance(content["actuator"], str):
+            raise InputError(f"{label}{line('actuator')}: actuator is no name; expected for example `pierburg`.")
         actuator = read_actuator(content["actuator"])
     model = Model.nominal(actuator)
     changes: dict[str, float] = {}
@@ -63,10 +48,34 @@ def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line:
     for effect, numbers in _section(content, "effects", label, line).items():
         changes.update(_effect(model, effect, numbers, label, line))
     try:
-        model = model.with_values(changes).with_residual(content.get("residual_torque"))
+        return model.with_values(changes).with_residual(_residual(content))
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
-    return model
+
+
+def _residual(content: dict[str, Any]) -> dict[str, Any] | None:
+    """The residual torque as arrays of numbers, each within the magnitudes of an input."""
+    given = content.get("residual_torque")
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        raise InputError(f"residual_torque is {given!r}; expected angle, velocity and torque.")
+    for name, values in given.items():
+        try:
+            array = np.array(values, dtype=float) if _only_numbers(values) else None
+        except ValueError:
+            array = None
+        if array is None:
+            raise InputError(f"residual_torque.{name} is not made of numbers; expected lists of equal length.")
+        check_magnitude(f"residual_torque.{name}", array.ravel())
+    return given
+
+
+def _only_numbers(values: Any) -> bool:
+    """Whether lists hold nothing but numbers and lists of them."""
+    if isinstance(values, (list, tuple, np.ndarray)):
+        return all(_only_numbers(each) for each in values)
+    return isinstance(values, (int, float, np.number)) and not isinstance(values, bool)
 
 
 def _section(content: dict[str, Any], key: str, label: str, line: Any) -> dict[str, Any]:

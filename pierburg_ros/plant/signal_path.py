@@ -18,6 +18,11 @@ FORGOTTEN = 20.0
 """Time constants of the winding after which its current has forgotten the duty before, to rounding."""
 EVENTS = 20_000
 """More events than this in one interval mean that a parameter set cannot be simulated."""
+SUSTAINED = 1e6
+"""Events a second of simulated time that may go on: an event takes up to a microsecond, so that no run takes much
+longer than the motion itself. The nominal valve has about 2,000."""
+BURST = 50 * EVENTS
+"""Events beyond those, as at an impact: about a second of computing."""
 
 
 @kernel
@@ -119,7 +124,8 @@ def _mechanics(p, s, duration):
     end = s.time + duration
     remaining = duration
     heats = p.thermal_resistance.thermal_resistance != 0.0
-    for _ in range(EVENTS):
+    s.events = max(s.events - SUSTAINED * duration, 0.0)
+    for _ in range(min(EVENTS, int(BURST - s.events))):
         start, amperes = s.motor_angle, s.current
         if p.gear_compliance.stiffness != 0.0:
             used = elastic.move(p, s, remaining)
@@ -132,6 +138,7 @@ def _mechanics(p, s, duration):
         if heats and used > 0.0:
             drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
         remaining -= used
+        s.events += 1.0
         if not remaining > 0.0:
             s.time = end
             return

@@ -77,6 +77,17 @@ def simulate(
     return output
 
 
+def refuse_unsimulated(model: Model, simulated: Signal, times: Signal) -> None:
+    """Say that and from when on a run is not a number: InputError."""
+    missing = np.flatnonzero(~np.isfinite(simulated))
+    if missing.size:
+        effects = ", ".join(model.active_effects) or "no effects"
+        raise InputError(
+            f"The model of {model.actuator.name} cannot be simulated with these values (from {times[missing[0]]:g} s"
+            f" on; {effects}), expected a motion that the simulator can follow. Bring them closer to nominal."
+        )
+
+
 def simulate_switched(
     model: Model,
     after: Model,

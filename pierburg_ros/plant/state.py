@@ -53,6 +53,7 @@ STATE = np.dtype(
         ("drive", np.float64),  # N.m, motor torque at rest, at the shaft
         ("braking", np.float64),  # N.m.s/rad, by the back-EMF
         ("step", np.float64),  # s, internal step that was last accepted
+        ("events", np.float64),  # of late, beyond those that may go on
         ("piece", PIECE),  # the linear piece last computed
         ("waiting", np.int64),  # duty changes under way
         ("first", np.int64),

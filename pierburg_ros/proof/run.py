@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.processes import end_with_parent
 from pierburg_ros.proof.docket import DIAGNOSE, conduct, prepare, result, source_version
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import Plan
@@ -95,8 +96,10 @@ def ended(pool: Executor, work: Callable[..., Any], names: Iterable[Any], worker
 def finish_when_interrupted() -> None:
     """Leave an interrupt from the keyboard to the main process: a worker ends the trial under way first.
 
-    A worker that is told to terminate gives its trial up, and ends the nodes that it has started.
+    A worker that is told to terminate gives its trial up, and ends the nodes that it has started; so does one whose
+    main process has been killed.
     """
+    end_with_parent(os.getppid(), signal.SIGTERM)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
 

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import check_magnitude, reading
 from pierburg_ros.recording.clocks import Clocks, Timed, check_one_clock
-from pierburg_ros.recording.formats import cdr
-from pierburg_ros.recording.formats.csv_table import read_csv
+from pierburg_ros.recording.columns import COLUMNS, Columns, tabulated
+from pierburg_ros.recording.formats import cdr, format_of
 from pierburg_ros.recording.formats.messages import Messages
-from pierburg_ros.recording.formats.rosbag2 import read_bag
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
 from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
@@ -23,6 +23,11 @@ from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
 SOURCES = ("stamp", "clock", "publish", "log")
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
 OPTIONAL = ("supply_voltage", "temperature", "enabled", "setpoints")
+LONGEST = 7 * 86_400.0
+"""Time [s] that a recording may span: a week. What acts all the time is simulated in steps of 2 ms, and a week of them
+takes about two minutes."""
+SPARSEST = 60.0
+"""Time [s] for each sample at most: no motion of an actuator shows in less than one sample a minute."""
 ACTING = ("supply_voltage", "enabled")
 """Optional signals without which the simulation of the recording would differ."""
 
@@ -34,15 +39,34 @@ def read_recording(path: str | Path, *, time: str | None = None, topics: Mapping
     clock, one of stamp, clock, publish and log, where the best one recorded is not wanted.
     """
     path, named = Path(path), dict(topics or {})
-    if not path.exists():
-        raise InputError(f"{path} does not exist, expected a recording. Check the path.")
     if time is not None and time not in SOURCES:
         raise InputError(f"--time found {time!r}, expected one of {', '.join(SOURCES)}. Choose one of those.")
-    if path.suffix.lower() == ".csv":
-        return read_csv(path, time, named)
-    check_names(named, ROLES)
-    bag = read_bag(path, lambda topic: last_name(topic) in ROLES or topic in named.values())
-    return assemble(Cast(bag, named), time)
+
+    def wanted(name: str) -> bool:
+        return last_name(name) in ROLES or name in COLUMNS.values() or name in named.values()
+
+    with reading(path, "a recording"), np.errstate(all="ignore"):
+        found = format_of(path).read(path, wanted)
+        check_names(named, COLUMNS if isinstance(found, Columns) else ROLES)
+        made = tabulated(found, time, named) if isinstance(found, Columns) else assemble(Cast(found, named), time)
+        check_bounds(made)
+    return made
+
+
+def check_bounds(recording: Recording) -> None:
+    """Refuse what no bench gives: values beyond any sensor, and times that no motion needs."""
+    check_magnitude(f"{recording.name}: {recording.quantity}", recording.measured)
+    for signal in ("duty", *OPTIONAL):
+        channel = getattr(recording, signal)
+        if channel is not None:
+            check_magnitude(f"{recording.name}: {signal}", channel.values)
+            check_magnitude(f"{recording.name}: time of {signal} [s]", channel.time)
+    longest = min(LONGEST, SPARSEST * recording.time.size)
+    if not recording.duration <= longest:
+        raise InputError(
+            f"{recording.name} spans {recording.duration:.3g} s with {recording.time.size} samples, expected at most"
+            f" {longest:,.0f} s. Check the unit of its times, or cut it into parts."
+        )
 
 
 def assemble(cast: Cast, choice: str | None) -> Recording:

@@ -60,6 +60,11 @@ class Cast:
                 f"{self.bag.name}: {topic} is a {self.bag.types[topic]}, expected {ROLES[role]}."
                 f" Name another with --topic {role}=/your/topic."
             )
+        if self.bag.encodings[topic] != "cdr":
+            raise InputError(
+                f"{self.bag.name}: {topic} is encoded as {self.bag.encodings[topic]!r}, expected 'cdr'."
+                " Convert it with a ROS 2 bag tool."
+            )
         return self.bag.messages(topic)
 
     def topic(self, role: str) -> str | None:

@@ -45,7 +45,7 @@ def test_passes_over_what_belongs_to_the_node(tmp_path):
     [
         ("", "has no section controller: ros__parameters"),
         ("controller: 3", "has no section controller: ros__parameters"),
-        ("a: [", "cannot be read as a parameter file"),
+        ("a: [", "line 1 is not YAML .*; expected a parameter file"),
         ("controller: {ros__parameters: {gain: 3.0}}", "no setting 'gain'"),
         ("controller: {ros__parameters: {zero: fast}}", "zero is 'fast'; expected a number"),
     ],
@@ -56,5 +56,5 @@ def test_says_what_is_wrong_with_a_file(tmp_path, text, reason):
 
 
 def test_says_that_a_file_is_missing(tmp_path):
-    with pytest.raises(InputError, match="cannot be read as a parameter file"):
+    with pytest.raises(InputError, match="does not exist, expected a parameter file"):
         read_parameter_file(tmp_path / "none.yaml")

@@ -60,7 +60,7 @@ def test_says_what_is_wrong_with_a_file(tmp_path, text, reason):
 
 
 def test_says_that_a_file_is_missing(tmp_path):
-    with pytest.raises(InputError, match="cannot be read as a setpoint file"):
+    with pytest.raises(InputError, match="does not exist, expected a setpoint file"):
         read_setpoint_file(tmp_path / "none.csv")
 
 

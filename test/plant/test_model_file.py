@@ -85,5 +85,5 @@ def test_missing_value_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_missing_file_is_one_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"cannot be read; expected a model file"):
+    with pytest.raises(InputError, match=r"does not exist, expected a model file"):
         read_model(tmp_path / "none.yaml")

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Channel, Recording
 
 Signal = NDArray[np.float64]
@@ -21,5 +22,6 @@ def synthetic_recording(
     keep = np.concatenate([[True], np.diff(duty) != 0.0])
     changes = Channel(time[keep], duty[keep])
     clean = simulate(model, Inputs(changes.time, changes.values), time)
+    refuse_unsimulated(model, clean, time)
     measured = clean + noise * np.random.default_rng(seed).standard_normal(time.size)
     return Recording(name, model.actuator.quantity, time - time[0], measured, changes, time_source="publish")

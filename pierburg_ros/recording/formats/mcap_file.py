@@ -2,96 +2,168 @@
 
 from __future__ import annotations
 
-import mmap
+import os
 import struct
-from io import BytesIO
+import zlib
 from pathlib import Path
+from typing import BinaryIO
 
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Schema
-from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
-from zstandard import ZstdError
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import opened
+from pierburg_ros.recording.formats.compression import MOST_UNPACKED, Damaged, most_unpacked, unpacked
+from pierburg_ros.recording.formats.format import Format, as_bag
 from pierburg_ros.recording.formats.messages import Bag
 
 RECORD = struct.Struct("<BQ")
 """Opcode and length before every record."""
 MESSAGE = struct.Struct("<HIQQ")
 """Channel, sequence, log time [ns] and publish time [ns] before every message's data."""
-DAMAGE = (McapError, CRCValidationError, ZstdError, struct.error, UnicodeDecodeError, RuntimeError)
-"""What the libraries raise on content that is not what was written; lz4 raises RuntimeError."""
+CHUNK = struct.Struct("<QQQI")
+"""Start and end time [ns], size and checksum of what a chunk unpacks to."""
+DECLARED = struct.Struct("<HH")
+"""A channel and its schema, before its topic."""
+IN_CHUNK = (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE)
+PRIVATE = 0x80
+"""Opcodes from here on are for applications of their own, which others pass over."""
+SLACK = 65_536
+"""Records that a file may hold beyond one a byte; every message has a time and a sequence, which take a byte packed."""
 
 
 def read_mcap(path: Path, bag: Bag) -> None:
     """Add the messages of the MCAP file at `path` to `bag`, up to its end or as far as its writer came."""
-    with path.open("rb") as file:
+    with opened(path, "an MCAP file") as file:
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             raise InputError(
                 f"{path.name} is not an MCAP file (its first bytes are others)."
                 " Give an .mcap, a rosbag2 directory or a .csv."
             )
-        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-            try:
-                McapRecords(bag).take(content, len(MCAP0_MAGIC))
-            except DAMAGE as error:
-                raise InputError(
-                    f"{path.name} is damaged after {bag.count} messages ({error}), expected whole records."
-                    " Recover it with 'mcap recover', or record again."
-                ) from error
+        try:
+            McapRecords(bag, os.fstat(file.fileno()).st_size).take(file)
+        except (Damaged, struct.error, UnicodeDecodeError) as error:
+            raise InputError(
+                f"{path.name} is damaged after {bag.count} messages ({error}), expected whole records."
+                " Recover it with 'mcap recover', or record again."
+            ) from error
 
 
 class McapRecords:
     """Adds the messages among MCAP records to a bag; knows the schemas and channels declared so far."""
 
-    def __init__(self, bag: Bag) -> None:
+    def __init__(self, bag: Bag, size: int) -> None:
         self.bag = bag
+        self.size = size
+        self.records = size + SLACK
+        self.unpacked = most_unpacked(size)
         self.schemas: dict[int, str] = {}
         self.topics: dict[int, str | None] = {}
 
-    def take(self, content: bytes | mmap.mmap, start: int = 0) -> None:
-        """Take the records of `content`, a file or a decompressed chunk; one that is cut off ends it."""
-        while start + RECORD.size <= len(content):
-            opcode, length = RECORD.unpack_from(content, start)
-            start += RECORD.size
-            end = start + length
-            if end > len(content) or opcode == Opcode.DATA_END:
+    def take(self, file: BinaryIO) -> None:
+        """Take the records of `file`; one that is cut off ends it."""
+        while len(head := file.read(RECORD.size)) == RECORD.size:
+            opcode, length = RECORD.unpack(head)
+            if opcode == Opcode.DATA_END:
                 return
-            if opcode == Opcode.MESSAGE:
-                self.message(content, start, end)
-            elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK):
-                self.declaration(opcode, ReadDataStream(BytesIO(content[start:end])))
-            start = end
+            end = file.tell() + length
+            if end > self.size:
+                return self.cut(file)
+            if opcode == Opcode.CHUNK:
+                self.chunk(file.read(self.bounded(length)))
+            elif opcode in IN_CHUNK:
+                self.record(opcode, file.read(self.bounded(length)))
+            else:
+                self.passed_over(opcode)
+                file.seek(end)
 
-    def message(self, content: bytes | mmap.mmap, start: int, end: int) -> None:
-        """Keep the message in content[start:end] if its channel is wanted."""
-        channel, sequence, log_time, publish_time = MESSAGE.unpack_from(content, start)
-        topic = self.topics.get(channel)
-        if topic is not None:
-            self.bag.headers[topic].append((log_time, publish_time, sequence, self.bag.count))
-            self.bag.data[topic].append(content[start + MESSAGE.size : end])
-        self.bag.count += 1
+    def cut(self, file: BinaryIO) -> None:
+        """A record that reaches beyond the end is the last one of a killed writer, unless the file is finished."""
+        file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
+        if file.tell() > len(MCAP0_MAGIC) and file.read() == MCAP0_MAGIC:
+            raise Damaged("a record reaches beyond the end of a finished file")
 
-    def declaration(self, opcode: int, record: ReadDataStream) -> None:
-        """Note a schema or a channel, or take the records of a chunk."""
-        if opcode == Opcode.SCHEMA:
-            schema = Schema.read(record)
-            self.schemas[schema.id] = schema.name
+    def bounded(self, length: int) -> int:
+        """The length of a record that is read whole."""
+        if length > MOST_UNPACKED:
+            raise Damaged(f"a record of {length} bytes")
+        return length
+
+    def passed_over(self, opcode: int) -> None:
+        """Refuse what is no record, and an endless number of those that are none of ours."""
+        if opcode == 0:
+            raise Damaged("zeros in place of a record")
+        self.counted()
+
+    def counted(self) -> None:
+        """Count a record."""
+        self.records -= 1
+        if self.records < 0:
+            raise Damaged(f"more records than {self.size} bytes hold")
+
+    def chunk(self, content: bytes) -> None:
+        """Take the records of a chunk."""
+        _, _, size, checksum = CHUNK.unpack_from(content)
+        kind, start = text(content, CHUNK.size)
+        (length,) = struct.unpack_from("<Q", content, start)
+        packed = content[start + 8 : start + 8 + length]
+        self.unpacked -= size
+        if size > MOST_UNPACKED or self.unpacked < 0 or len(packed) != length:
+            raise Damaged(f"a chunk of {length} bytes that says it holds {size}")
+        records = unpacked(kind, packed, size)
+        if len(records) != size or checksum not in (0, zlib.crc32(records)):
+            raise Damaged("a chunk whose size or checksum is another")
+        self.take_packed(records)
+
+    def take_packed(self, records: bytes) -> None:
+        """Take the records of an unpacked chunk."""
+        start = 0
+        while start < len(records):
+            opcode, length = RECORD.unpack_from(records, start)
+            start += RECORD.size
+            if (opcode not in IN_CHUNK and opcode < PRIVATE) or start + length > len(records):
+                raise Damaged(f"a record of type {opcode} and {length} bytes in a chunk")
+            self.record(opcode, records[start : start + length])
+            start += length
+
+    def record(self, opcode: int, content: bytes) -> None:
+        """Take a message, or note a schema or a channel."""
+        self.counted()
+        if opcode == Opcode.MESSAGE:
+            self.message(content)
+        elif opcode == Opcode.SCHEMA:
+            self.schemas[struct.unpack_from("<H", content)[0]] = text(content, 2)[0]
         elif opcode == Opcode.CHANNEL:
-            self.channel(Channel.read(record))
-        else:
-            chunk, length = get_chunk_data_stream(Chunk.read(record), validate_crc=True)
-            self.take(chunk.read(length))
+            self.channel(content)
 
-    def channel(self, channel: Channel) -> None:
+    def message(self, content: bytes) -> None:
+        """Keep a message if its channel is wanted."""
+        channel, sequence, log_time, publish_time = MESSAGE.unpack_from(content)
+        if channel not in self.topics:
+            raise Damaged(f"a message on channel {channel}, which is not declared")
+        topic = self.topics[channel]
+        if topic is None:
+            self.bag.count += 1
+        else:
+            self.bag.add(topic, log_time, publish_time, sequence, content[MESSAGE.size :])
+
+    def channel(self, content: bytes) -> None:
         """Note a channel; its messages are kept if its topic is wanted."""
-        wanted = self.bag.declare(channel.topic, self.schemas.get(channel.schema_id, "of no known type"))
-        if wanted and channel.message_encoding != "cdr":
-            raise InputError(
-                f"{self.bag.name}: {channel.topic} is encoded as {channel.message_encoding!r}, expected"
-                " 'cdr'. Convert it with a ROS 2 bag tool."
-            )
-        self.topics[channel.id] = channel.topic if wanted else None
+        channel, schema = DECLARED.unpack_from(content)
+        topic, start = text(content, DECLARED.size)
+        encoding, _ = text(content, start)
+        self.topics[channel] = self.bag.declare(topic, self.schemas.get(schema, "of no known type"), encoding)
+
+
+def text(content: bytes, start: int) -> tuple[str, int]:
+    """The text at `start`, with its length before it, and where it ends."""
+    (length,) = struct.unpack_from("<I", content, start)
+    end = start + 4 + length
+    if end > len(content):
+        raise Damaged(f"a text of {length} bytes in a record of {len(content)}")
+    return content[start + 4 : end].decode(), end
+
+
+FORMAT = Format(
+    "an MCAP file", lambda path, start: path.suffix == ".mcap" or start.startswith(MCAP0_MAGIC), as_bag(read_mcap)
+)

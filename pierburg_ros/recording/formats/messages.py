@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.errors import InputError, printable
+
 Integers = NDArray[np.int64]
 Wanted = Callable[[str], bool]
 """Whether a topic of this name is to be kept."""
+LATEST = 2**63 - 1
+"""Latest time [ns] that a signed number of 64 bits holds, as ROS and NumPy count."""
+OVERHEAD = 80
+"""Bytes that a kept message takes in memory besides its own: object, reference, times, sequence and place."""
+MOST_KEPT = 1 << 30
+"""Bytes of messages kept at most, half of the 2 GiB that a command may take; the arrays made of them have the rest.
+It is 3 h at 1 kHz of all the topics that are read."""
 
 
 @dataclass(frozen=True)
@@ -35,21 +45,47 @@ class Messages:
 
 @dataclass
 class Bag:
-    """Collects the messages of a recording: the type of every topic, and the messages of those wanted."""
+    """Collects the messages of a recording: type and encoding of every topic, and the messages of those wanted.
+
+    `unpack` gives the CDR of a message as it lies in the file.
+    """
 
     name: str
     wanted: Wanted
+    unpack: Callable[[bytes], bytes] = bytes
     types: dict[str, str] = field(default_factory=dict)
+    encodings: dict[str, str] = field(default_factory=dict)
     count: int = 0
-    headers: dict[str, list[tuple[int, int, int, int]]] = field(default_factory=dict)
+    weight: int = 0
+    headers: dict[str, array[int]] = field(default_factory=dict)
     data: dict[str, list[bytes]] = field(default_factory=dict)
 
-    def declare(self, topic: str, type_name: str) -> bool:
-        """Note that `topic` exists; True if its messages are wanted."""
+    def declare(self, topic: str, type_name: str, encoding: str) -> str | None:
+        """Note that `topic` exists; its name if its messages are wanted."""
+        topic, type_name = printable(topic), printable(type_name)
         self.types.setdefault(topic, type_name)
-        self.headers.setdefault(topic, [])
+        self.headers.setdefault(topic, array("q"))
         self.data.setdefault(topic, [])
-        return self.wanted(topic)
+        self.encodings.setdefault(topic, encoding)
+        return topic if self.wanted(topic) else None
+
+    def add(self, topic: str, log_time: int, publish_time: int, sequence: int, data: bytes) -> None:
+        """Keep a message; times [ns]."""
+        if not (0 <= log_time <= LATEST and 0 <= publish_time <= LATEST):
+            raise InputError(
+                f"{self.name}: message {self.count + 1}, on {topic}, has the time {max(log_time, publish_time)} ns or"
+                " a negative one, expected a time before the year 2262. Cut or repair the recording there."
+            )
+        data = self.unpack(data)
+        self.weight += len(data) + OVERHEAD
+        if self.weight > MOST_KEPT:
+            raise InputError(
+                f"{self.name} has more than {MOST_KEPT >> 20} MiB of the signals wanted, expected less than memory"
+                " holds. Cut it into parts."
+            )
+        self.headers[topic].extend((log_time, publish_time, sequence, self.count))
+        self.data[topic].append(data)
+        self.count += 1
 
     def messages(self, topic: str) -> Messages:
         """Everything collected of `topic`."""
