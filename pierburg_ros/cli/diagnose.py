@@ -13,7 +13,6 @@ from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.diagnosis.diagnose import Result
 from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
 from pierburg_ros.diagnosis.report.page import write_page, write_picture
 from pierburg_ros.diagnosis.report.terminal import shown
