@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,10 +11,11 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
-from pierburg_ros.estimation.run import Run, Switch, run_of
+from pierburg_ros.estimation.run import Run, Switch, runs_of
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.signals import Flags, Signal
 
@@ -29,14 +31,24 @@ VALIDATION, TEST = 2, 6
 class Data:
     """All recordings of one actuator.
 
-    `noise` is the standard deviation of the sensor noise, `step` that of the converter where it is coarse beside the
-    noise, otherwise 0, both in the measured unit.
+    `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, and of what
+    missing messages of the duty may do. `step` is that of the converter where it is coarse beside the noise, otherwise
+    0; all in the measured unit. `left_out` are spans [s] without a known input, with the number of their recording,
+    `warnings` what to say first of recordings that lack messages.
     """
 
     actuator: Actuator
     runs: tuple[Run, ...]
     noise: float
     step: float = 0.0
+    sensor_noise: float = 0.0
+    left_out: tuple[tuple[int, Span], ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def several(self) -> bool:
+        """Whether there is more than one recording."""
+        return self.runs[0].number != self.runs[-1].number
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Measured minus simulated over all runs, shape (samples,), in units of the noise.
@@ -53,8 +65,8 @@ class Data:
 
     @property
     def duration(self) -> float:
-        """Time of the last sample of the first run [s]."""
-        return float(self.runs[0].time[-1])
+        """Time of the last sample of the first recording [s]."""
+        return max(float(run.time[-1]) for run in self.runs if run.number == 0)
 
     @property
     def angle_per_unit(self) -> float:
@@ -87,16 +99,21 @@ def data_of(recordings: Sequence[Recording], model: Model) -> Data:
         raise InputError("There is no recording to fit; expected one or more. Name a file.")
     if len({recording.quantity for recording in recordings}) > 1:
         raise InputError("The recordings hold Hall voltage and position; expected one quantity. Fit them one by one.")
-    runs = tuple(run_of(recording, model) for recording in recordings)
+    cut = [runs_of(recording, model, number) for number, recording in enumerate(recordings)]
+    runs = tuple(run for parts, _ in cut for run in parts)
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
-    return Data(model.actuator, runs, noise, coarse_step([run.measured for run in runs], noise))
+    lost = float(np.median([found.uncertainty for _, found in cut]))
+    left_out = tuple((number, span) for number, (_, found) in enumerate(cut) for span in found.left_out)
+    step = coarse_step([run.measured for run in runs], noise)
+    warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
+    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, left_out, warnings)
 
 
 def in_parts(data: Data) -> Data:
     """`data` with its samples split into blocks that train, validate and test."""
 
     def split(run: Run) -> Run:
-        number = _block(run.time) % CYCLE
+        number = _block(data, run) % CYCLE
         return replace(run, train=~np.isin(number, (VALIDATION, TEST)), validation=number == VALIDATION)
 
     return replace(data, runs=tuple(split(run) for run in data.runs))
@@ -104,7 +121,7 @@ def in_parts(data: Data) -> Data:
 
 def held_back(data: Data) -> Data:
     """`data` with a third of the training blocks kept from the fit as well, for a choice before the last one."""
-    runs = (run.trained_on(run.train & (_block(run.time) % (CYCLE // 2) != 0)) for run in data.runs)
+    runs = (run.trained_on(run.train & (_block(data, run) % (CYCLE // 2) != 0)) for run in data.runs)
     return replace(data, runs=tuple(runs))
 
 
@@ -123,7 +140,8 @@ def rms(values: Signal) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _block(time: Signal) -> np.ndarray:
-    """Number of the block of each sample; a short recording gets shorter blocks."""
-    length = min(BLOCK, (time[-1] - time[0]) / (2 * CYCLE))
-    return np.asarray(np.floor((time - time[0]) / length).astype(int))
+def _block(data: Data, run: Run) -> np.ndarray:
+    """Number of the block of each sample of a run, from the start of its recording; a short one gets shorter blocks."""
+    times = [each.time for each in data.runs if each.number == run.number]
+    start, end = times[0][0], times[-1][-1]
+    return np.asarray(np.floor((run.time - start) / min(BLOCK, (end - start) / (2 * CYCLE))).astype(int))

@@ -85,12 +85,17 @@ def from_standstill(recording: Recording, nominal: Model) -> Recording:
     start = InitialState.of(recording.time, recording.measured)
     if start.known or start.state(nominal, recording.quantity)[1] == 0.0:
         return recording
-    still = _even(recording.measured[: int(LATEST * recording.measured.size)], SLOW * start.noise, start.noise)
-    lasting = still[: -EVEN // 2] & still[EVEN // 2 :]
-    if not lasting.any():
+    sample = first_standstill(recording.measured[: int(LATEST * recording.measured.size)], start.noise)
+    if sample is None:
         return recording
-    sample = int(np.argmax(lasting)) + EVEN // 2
     return replace(recording, time=recording.time[sample:], measured=recording.measured[sample:])
+
+
+def first_standstill(measured: Signal, noise: float) -> int | None:
+    """The first sample of `measured` from which the shaft stands still or creeps; None where there is none."""
+    still = _even(measured, SLOW * noise, noise)
+    lasting = still[: -EVEN // 2] & still[EVEN // 2 :]
+    return int(np.argmax(lasting)) + EVEN // 2 if lasting.any() else None
 
 
 def _stays(measured: Signal, noise: float) -> int:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import InitialState, from_standstill
+from pierburg_ros.estimation.initial_state import InitialState, first_standstill, from_standstill
+from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.signals import Flags, Signal
 
 
@@ -31,6 +34,7 @@ class Run:
     `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
     explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
+    `number` counts recordings: one that lacks messages makes several runs.
     """
 
     name: str
@@ -42,6 +46,7 @@ class Run:
     train: Flags
     validation: Flags
     decoder: Model | None = None
+    number: int = 0
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -74,7 +79,33 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-def run_of(recording: Recording, model: Model) -> Run:
+FEWEST = 100
+"""Samples without which a piece of a recording is left out: twice what tells where the shaft stands."""
+
+
+def runs_of(recording: Recording, model: Model, number: int = 0) -> tuple[list[Run], Pieces]:
+    """The pieces of `recording` with a known input, the `number`th of all, and how it was cut."""
+    found = pieces(from_standstill(recording, model), model)
+    runs = [run_of(part, model, number) for part in _from_standstills(found.parts) if part.time.size >= FEWEST]
+    if not runs:
+        raise InputError(
+            f"{recording.name} has no stretch of {FEWEST} samples with a known duty that begins at a standstill"
+            " (messages are missing). Record again with fewer processes beside."
+        )
+    return runs, found
+
+
+def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
+    """The first part, and the others from their first standstill on: where the shaft is in motion after a gap, a
+    simulation that begins a little off would rest elsewhere."""
+    yield parts[0]
+    for part in parts[1:]:
+        sample = first_standstill(part.measured, noise_of(part.time, part.measured))
+        if sample is not None:
+            yield replace(part, time=part.time[sample:], measured=part.measured[sample:])
+
+
+def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
     """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit."""
     actuator = model.actuator
     if recording.quantity == "hall_voltage" and actuator.quantity == "position":
@@ -95,6 +126,7 @@ def run_of(recording: Recording, model: Model) -> Run:
         np.ones(recording.time.size, dtype=bool),
         np.zeros(recording.time.size, dtype=bool),
         Model.nominal(actuator) if decodes else None,
+        number,
     )
 
 

@@ -38,7 +38,7 @@ def remainder(found: Found, progress: Progress = lambda _: None, jobs: int | Non
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     with workers(jobs) as pool:
-        if len(data.runs) > 1:
+        if data.several:
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)

@@ -89,11 +89,11 @@ def _settled(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def _folds(data: Data) -> Folds:
-    count = min(FOLDS, len(data.runs))
+    count = min(FOLDS, data.runs[-1].number + 1)
     pairs = []
     for fold in range(count):
-        left = tuple(run for i, run in enumerate(data.runs) if i % count == fold)
-        rest = tuple(run for i, run in enumerate(data.runs) if i % count != fold)
+        left = tuple(run for run in data.runs if run.number % count == fold)
+        rest = tuple(run for run in data.runs if run.number % count != fold)
         pairs.append((replace(data, runs=rest), replace(data, runs=left)))
     return pairs
 

@@ -51,11 +51,11 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
     places, ranges = located(data, conclusion)
     return Diagnosis(
         schema=1,
-        recordings=[run.name for run in data.runs],
+        recordings=list({run.number: run.name for run in data.runs}.values()),
         quantity=actuator.quantity,
         unit=actuator.unit,
         verdict=conclusion.verdict,
-        summary=words.cautioned(limits, text),
+        summary=words.cautioned(limits, words.warned(data, conclusion.verdict, text)),
         effects=named,
         parameters=parameters_found,
         changes=changed,
@@ -206,7 +206,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
     """
     if conclusion.verdict in ("consistent", "parameter_drift"):
         return [], []
-    run, final = data.runs[0], conclusion.final
+    run, final = longest(data), conclusion.final
     motion = motion_of(run, data.actuator, data.noise)
     residual = run.measured - run.simulated(conclusion.recalibrated.model)
     mark = residual
@@ -217,6 +217,11 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
     found = windows(motion.time, mark**2)
     return locations(motion, residual, found), regimes(motion, residual)
+
+
+def longest(data: Data) -> Run:
+    """The longest run of the first recording: all of it, unless messages are missing."""
+    return max((run for run in data.runs if run.number == 0), key=lambda run: run.time.size)
 
 
 def residual_torque(shape: Shape | None) -> ResidualTorque | None:

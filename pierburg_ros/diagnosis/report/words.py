@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
@@ -9,6 +10,7 @@ from pierburg_ros.diagnosis.remainder.shared import LeftOut
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.data import Data
 
 SEPARATES = {
     "armature_resistance": "measure the motor resistance at standstill, or log the motor current",
@@ -107,6 +109,20 @@ def summary(
         return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
     helped = f" What helps on recordings left out is {_listed([e.id for e in effects])}. {named}" if effects else ""
     return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
+
+
+def warned(data: Data, verdict: Verdict, text: str) -> str:
+    """The summary after a warning where messages are missing, or, where they may have hidden anything, without a
+    conclusion."""
+    if not data.warnings:
+        return text
+    warning = " ".join(data.warnings)
+    added = math.sqrt(max(data.noise**2 - data.sensor_noise**2, 0.0))
+    if added > data.sensor_noise:
+        warning += f" What is missing may move the signal by {added:.2g} {data.actuator.unit}, more than its noise."
+        if verdict != "missing_physics":
+            warning += " Nothing can be concluded: record again with fewer processes beside."
+    return f"{warning} {text}"
 
 
 def cautioned(limits: Sequence[Limit], text: str) -> str:

@@ -1,0 +1,110 @@
+"""A recording in pieces with a known input: what is simulated starts again where messages are missing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.braking import braking
+from pierburg_ros.plant.decode import angle_per_unit
+from pierburg_ros.recording import Channel, Recording
+from pierburg_ros.recording.loss import Span
+from pierburg_ros.recording.noise import noise_of
+from pierburg_ros.signals import Signal
+
+SEEN = 1.0
+"""Error of the angle, in noises of the sensor, that one unknown stretch of the input may cause without the simulation
+starting again after it: more would be seen."""
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """The parts of a recording that can be simulated, times unchanged, and what the losses within them may add to the
+    error, as a standard deviation in the measured unit. `left_out` are spans [s] whose input is not known."""
+
+    parts: list[Recording]
+    uncertainty: float
+    left_out: tuple[Span, ...]
+
+
+def pieces(recording: Recording, model: Model) -> Pieces:
+    """`recording` cut where a missing duty may have moved the shaft by more than the noise.
+
+    Elsewhere the duty is taken to have changed half way through: held until the next message it would always come
+    late. What that leaves adds up over the time in which `model` forgets an error.
+    """
+    unknown = recording.unknown_input
+    if not unknown:
+        return Pieces([recording], 0.0, ())
+    per_radian = 1.0 / abs(angle_per_unit(model))
+    starts, ends = (np.array([span[place] for span in unknown]) for place in (0, 1))
+    moved = _top_speed(model) * (ends - starts) * _doubt(recording.duty, starts, ends) * per_radian
+    doubtful = moved > SEEN * noise_of(recording.time, recording.measured)
+    filled = replace(recording, duty=_halved(recording.duty, starts[~doubtful], ends[~doubtful]))
+    left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
+    remembered = min(_memory(model), recording.duration)
+    added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration
+    return Pieces(_cut(filled, left_out), math.sqrt(added), left_out)
+
+
+def _top_speed(model: Model) -> float:
+    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage."""
+    value = model.values
+    return value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
+
+
+def _memory(model: Model) -> float:
+    """Time constant [s] with which the spring takes an error of the angle back, infinite without a spring."""
+    stiffness = model.values.get("spring_stiffness", 0.0)
+    return braking(model) / stiffness if stiffness > 0.0 else math.inf
+
+
+def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:
+    """By how much the mean duty in each unknown span may differ from the mean of what is known on either side.
+
+    A step from one to the other may have come at any moment, which makes its size over the square root of 12. What
+    the duty does in between otherwise is seen where it is known: the median error of the same mean over such a time.
+    """
+    step = np.abs(duty.at(ends, before=0.0) - duty.at(starts, before=0.0)) / math.sqrt(12.0)
+    begins = np.linspace(duty.time[0], duty.time[-1], KNOWN)
+    lengths, place = np.unique(np.round(ends - starts, 4), return_inverse=True)
+    wander = np.empty(lengths.size)
+    for index, length in enumerate(lengths):
+        inside = begins[:, None] + length * np.linspace(0.0, 1.0, 9)
+        values = duty.at(inside.ravel(), before=0.0).reshape(inside.shape)
+        error = values[:, :-1].mean(axis=1) - 0.5 * (values[:, 0] + values[:, -1])
+        wander[index] = NORMAL * float(np.median(np.abs(error)))
+    return np.maximum(step, wander[place])
+
+
+KNOWN = 1000
+"""Moments at which the known duty is looked at: their median is then known to a few percent."""
+NORMAL = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation."""
+
+
+def _halved(duty: Channel, starts: Signal, ends: Signal) -> Channel:
+    """The duty with, in each span, the mean of what was before and what comes after in force until the end."""
+    if not starts.size:
+        return duty
+    interval = float(np.median(np.diff(duty.time)))
+    moments = starts + np.minimum(interval, 0.5 * (ends - starts))
+    means = 0.5 * (duty.at(starts, before=0.0) + duty.at(ends, before=0.0))
+    times, values = np.concatenate([duty.time, moments]), np.concatenate([duty.values, means])
+    order = np.argsort(times, kind="stable")
+    return Channel(times[order], values[order])
+
+
+def _cut(recording: Recording, doubtful: tuple[Span, ...]) -> list[Recording]:
+    """The parts of `recording` between the `doubtful` spans."""
+    edges = [(-math.inf, float(recording.time[0])), *doubtful, (float(recording.time[-1]), math.inf)]
+    parts = []
+    for (_, start), (end, _) in pairwise(edges):
+        inside = (recording.time >= start) & (recording.time <= end)
+        if np.count_nonzero(inside) >= 2:
+            parts.append(replace(recording, time=recording.time[inside], measured=recording.measured[inside]))
+    return parts
