@@ -8,15 +8,16 @@ import pytest
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "pierburg_ros"
 ALLOWED = {
+    "arrays": set(),
     "errors": set(),
     "kernel": set(),
     "parameter": {"errors"},
     "processes": {"errors"},
-    "effects": {"errors", "kernel", "parameter"},
-    "actuators": {"errors", "kernel", "parameter", "effects"},
-    "plant": {"errors", "kernel", "parameter", "effects", "actuators"},
-    "control": {"errors", "kernel", "parameter"},
-    "recording": {"errors", "kernel"},
+    "effects": {"arrays", "errors", "kernel", "parameter"},
+    "actuators": {"arrays", "errors", "kernel", "parameter", "effects"},
+    "plant": {"arrays", "errors", "kernel", "parameter", "effects", "actuators"},
+    "control": {"arrays", "errors", "kernel", "parameter"},
+    "recording": {"arrays", "errors", "kernel"},
 }
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
@@ -26,7 +27,7 @@ ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification"}
 ALLOWED["cli"] = ALLOWED["nodes"]
-FORMULATION = {"errors", "kernel"}
+FORMULATION = {"arrays", "errors", "kernel"}
 ROS = {
     "builtin_interfaces",
     "diagnostic_msgs",

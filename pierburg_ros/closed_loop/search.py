@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
+from pierburg_ros.arrays import Vector
+
 Cost = Callable[[Vector, float], float]  # cost of a point; may stop counting above the second argument
 
 SHARE_TOWARDS_BEST = 0.7  # of the candidates; the rest explore around their parent

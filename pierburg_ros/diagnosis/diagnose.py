@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run, evidence_of
 from pierburg_ros.diagnosis.evidence.motion import motion_of
@@ -27,8 +27,6 @@ from pierburg_ros.diagnosis.verdict.shared import select
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
-
-Signal = NDArray[np.float64]
 
 CONFIRMED = 0.9
 """Share of the error on unseen data to which a residual torque must bring it to be kept."""

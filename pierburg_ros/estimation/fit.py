@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import optimize
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.problem import COARSE_STEP, FINE_STEP, Problem
 from pierburg_ros.estimation.scaling import Scaling
@@ -18,7 +18,6 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.recording import Recording
 
-Signal = NDArray[np.float64]
 GOOD = 1.1
 """A fit whose RMSE is below this multiple of the noise needs no second start."""
 COARSE_TOLERANCE = 1e-3

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Signal = NDArray[np.float64]
+from pierburg_ros.arrays import Signal
+
 Residual = Callable[[Signal], Signal]
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.resimulation import Resimulation
 from pierburg_ros.estimation.scaling import Scaling
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 
-Signal = NDArray[np.float64]
 COARSE_STEP = 0.005
 """Difference step far from the minimum: 0.5 % of a positive parameter, to look across stick and slip."""
 FINE_STEP = 1e-5

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.start import Start
 from pierburg_ros.plant import Inputs, Model, simulate_many
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording.recording import Recording
-
-Signal = NDArray[np.float64]
 
 
 def inputs_of(recording: Recording) -> Inputs:

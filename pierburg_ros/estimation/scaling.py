@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Vector
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.plant import Model
 
-Vector = NDArray[np.float64]
 ABOVE = {name: parameter.above for name, parameter in DECLARED.items() if parameter.above is not None}
 """Parameters that are counted from another one."""
 WIDEST_FACTOR = 20.0

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-Signal = NDArray[np.float64]
+from pierburg_ros.arrays import Signal
+
 RANK = 1e-5
 """Singular values below this share of the largest are differences of rounding, not information."""
 

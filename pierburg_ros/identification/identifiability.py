@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.fit import Fit
 from pierburg_ros.estimation.problem import Problem
 from pierburg_ros.estimation.scaling import Scaling
 from pierburg_ros.recording.recording import Recording
 
-Signal = NDArray[np.float64]
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below a tenth of it."""
 MOST_PARTNERS = 4

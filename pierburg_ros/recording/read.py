@@ -10,13 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording.clocks import Clocks, Timed, check_one_clock
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.csv_table import read_csv
 from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.formats.rosbag2 import read_bag
-from pierburg_ros.recording.recording import Channel, Recording, Samples
+from pierburg_ros.recording.recording import Channel, Recording
 from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
 
 SOURCES = ("stamp", "clock", "publish", "log")
@@ -70,10 +71,10 @@ def assemble(cast: Cast, choice: str | None) -> Recording:
     return Recording(name, quantity, first.time, first.values, **channels, time_source=", ".join(sources))
 
 
-def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
+def samples(name: str, timed: Timed, origin: int) -> tuple[Signal, Signal]:
     """Times [s] since `origin` [ns] and decoded values of the messages that have a time."""
     values = DECODERS[timed.messages.type](timed.messages)[timed.kept]
-    time: Samples = (timed.time - origin).astype(np.float64) * 1e-9
+    time: Signal = (timed.time - origin).astype(np.float64) * 1e-9
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise InputError(

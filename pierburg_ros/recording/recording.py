@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 
-Samples = NDArray[np.float64]
 UNITS = {"hall_voltage": "V", "position": "rad"}
 
 
@@ -17,15 +16,15 @@ UNITS = {"hall_voltage": "V", "position": "rad"}
 class Channel:
     """Values that each hold from their time [s] until the next one's; both of shape (changes,)."""
 
-    time: Samples
-    values: Samples
+    time: Signal
+    values: Signal
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
         object.__setattr__(self, "values", np.asarray(self.values, dtype=np.float64))
         check_signal("a channel", self.time, self.values)
 
-    def at(self, time: Samples, before: float | None = None) -> Samples:
+    def at(self, time: Signal, before: float | None = None) -> Signal:
         """Values in force at `time` [s]; earlier than the first one: `before`, or else the first value."""
         place = np.searchsorted(self.time, time, side="right") - 1
         first = self.values[0] if before is None else before
@@ -51,8 +50,8 @@ class Recording:
 
     name: str
     quantity: str
-    time: Samples
-    measured: Samples
+    time: Signal
+    measured: Signal
     duty: Channel
     supply_voltage: Channel | None = None
     temperature: Channel | None = None
@@ -117,7 +116,7 @@ class Recording:
         return replace(self, time=time, measured=measured, duty=duty, **others)
 
 
-def check_signal(what: str, time: Samples, values: Samples) -> None:
+def check_signal(what: str, time: Signal, values: Signal) -> None:
     """Refuse a signal that is empty, not finite, of unequal lengths, or whose time runs backwards."""
     if time.ndim != 1 or time.shape != values.shape or time.size == 0:
         raise InputError(f"{what} has {time.size} times and {values.size} values, expected equally many, one or more.")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.resolution import coarse_step
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.resimulation import inputs_in_force
@@ -17,8 +18,6 @@ from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
-
-Signal = NDArray[np.float64]
 
 BLOCK = 1.5
 """Length of the blocks [s] that train, choose and judge in turn: some movements and standstills in each part."""

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-
-Signal = NDArray[np.float64]
 
 GRID = 0.02
 """Time step [s] on which missing torque is estimated."""

@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence.data import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
-
-Signal = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 HALF_WINDOW = 0.02
 """Half the time [s] over which a velocity is taken; two samples where they are farther apart."""

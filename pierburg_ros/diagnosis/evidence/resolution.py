@@ -10,11 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED, STEP
-
-Signal = NDArray[np.float64]
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured."""

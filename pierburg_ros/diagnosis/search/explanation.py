@@ -7,12 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.plant import Model
-
-Signal = NDArray[np.float64]
 
 DRIFT = math.log(6.0)
 """A base parameter may drift by up to this factor (logarithm) either way."""

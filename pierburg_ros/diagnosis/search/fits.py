@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Switch
 from pierburg_ros.diagnosis.evidence.resolution import counted
 from pierburg_ros.diagnosis.search.explanation import AFTER, WHEN, Coordinates, Explanation, Variant
@@ -17,7 +17,6 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.least_squares import Solution, minimise
 from pierburg_ros.plant import Model
 
-Signal = NDArray[np.float64]
 Start = Mapping[str, float]
 
 STRIDES = {name: p.stride for name, p in DECLARED.items() if p.stride is not None}

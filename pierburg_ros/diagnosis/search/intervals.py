@@ -7,12 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.search.candidates import is_rough
 from pierburg_ros.diagnosis.search.fits import Fit, Search, spread
-
-Signal = NDArray[np.float64]
 
 SURE = 1.96
 """Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.search.explanation import LOGARITHMIC
 from pierburg_ros.diagnosis.search.fits import Fit, Search, repetition, spread
-
-Signal = NDArray[np.float64]
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, Switch, after_choice, rms
@@ -22,8 +21,6 @@ from pierburg_ros.diagnosis.search.selection import EXPLAINED
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives, explore_alternatives
 from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.plant import Model
-
-Signal = NDArray[np.float64]
 
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""

@@ -8,17 +8,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, held_back, rms
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import REMEMBERED, restarted
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.plant import Model
-
-Signal = NDArray[np.float64]
 
 ANGLES = 7
 """Nodes over the angle."""

@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, rms
 from pierburg_ros.diagnosis.report.words import by_recordings_left_out
 from pierburg_ros.diagnosis.search.candidates import starts_of
@@ -24,8 +24,6 @@ from pierburg_ros.diagnosis.search.fits import Fit, Search
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.effects.effect import Start
-
-Signal = NDArray[np.float64]
 
 FOLDS = 4
 """Parts into which the recordings are divided, each left out in turn."""

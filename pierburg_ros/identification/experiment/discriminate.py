@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.fit import fit
 from pierburg_ros.estimation.problem import COARSE_STEP, Problem
 from pierburg_ros.estimation.scaling import Scaling
@@ -21,7 +21,6 @@ from pierburg_ros.identification.experiment.explanations import refitted_names
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 
-Signal = NDArray[np.float64]
 SEGMENTS = 4
 """Parts of the sequence, each of one recipe."""
 SEEDS = 2

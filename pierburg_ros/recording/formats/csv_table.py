@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording.recording import Channel, Recording, Samples, check_signal
+from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.roles import check_names
 
 COLUMNS = {
@@ -96,7 +97,7 @@ def is_number(cell: str) -> bool:
     return True
 
 
-def numbers(path: Path, column: str, cells: list[str]) -> Samples:
+def numbers(path: Path, column: str, cells: list[str]) -> Signal:
     """The cells of one column as numbers, NaN where empty."""
     try:
         return np.array([float(cell) if cell else np.nan for cell in cells])
@@ -107,7 +108,7 @@ def numbers(path: Path, column: str, cells: list[str]) -> Samples:
         ) from error
 
 
-def channel(path: Path, time: Samples, column: str, table: Mapping[str, list[str]]) -> Channel:
+def channel(path: Path, time: Signal, column: str, table: Mapping[str, list[str]]) -> Channel:
     """The filled cells of one column with their times [s]."""
     values = numbers(path, column, table[column])
     filled = np.array([cell != "" for cell in table[column]])
