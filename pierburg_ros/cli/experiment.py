@@ -10,6 +10,7 @@ import numpy as np
 import typer
 from rich.console import Console
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.identify import starting_model
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
@@ -29,7 +30,7 @@ from pierburg_ros.identification.experiment.excitation import (
     setpoint_sequence,
 )
 from pierburg_ros.identification.experiment.explanations import explanation
-from pierburg_ros.identification.experiment.synthetic import Signal, synthetic_recording
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
 from pierburg_ros.recording.write import write_simulated

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.closed_loop.course import STEPS
 from pierburg_ros.closed_loop.metrics import Metrics, settled_band
 from pierburg_ros.closed_loop.time_optimal import settling_bound
 from pierburg_ros.plant import Model
 
-Signal = NDArray[np.float64]
 Table = NDArray[np.float64]
 QUANTITIES = ("settling", "overshoot", "steady_state_error", "hunting")
 

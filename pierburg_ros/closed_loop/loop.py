@@ -11,8 +11,8 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.control import Schedule, Settings, law, linear
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
@@ -22,7 +22,6 @@ from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.sensor import measured, quantised
 
-Signal = NDArray[np.float64]
 TICK = [(name, np.float64) for name in ("setpoint", "noise", "hall_voltage", "duty", "angle")]
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
+
 BAND_SHARE = 0.02  # settled: within this share of the step,
 BAND_LEAST = math.radians(0.3)  # but no closer than this [rad]
 LATE_SHARE = 0.6  # standstill is judged over this last part of the response: 3 of 5 s
-
-Signal = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
-Cost = Callable[[Vector, float], float]  # cost of a point; may stop counting above the second argument
+from pierburg_ros.arrays import Signal
+
+Cost = Callable[[Signal, float], float]  # cost of a point; may stop counting above the second argument
 
 SHARE_TOWARDS_BEST = 0.7  # of the candidates; the rest explore around their parent
 CROSSOVER = 0.8
@@ -22,7 +23,7 @@ class Population:
     """Points of shape (members, parameters) and their costs, best first."""
 
     points: NDArray[np.float64]
-    costs: Vector
+    costs: Signal
 
 
 def search(
@@ -53,7 +54,7 @@ def search(
 
 
 def offspring(
-    random: np.random.Generator, points: NDArray[np.float64], best: Vector, low: Vector, high: Vector
+    random: np.random.Generator, points: NDArray[np.float64], best: Signal, low: Signal, high: Signal
 ) -> NDArray[np.float64]:
     """One candidate for each point; a value beyond the bounds is drawn anew."""
     members, size = points.shape

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.closed_loop.course import STEPS, Course
 from pierburg_ros.closed_loop.designs import Design
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal, Table, settling_bounds, values
@@ -30,8 +30,6 @@ BEYOND = 0.02  # what being better still is worth, beside reaching the limit
 SEEDS = {True: (0, 1, 2), False: (3,)}  # of the noise, for the plants with stated goals and the others
 SHORT = Course(approach=0.3, hold=0.35, watch=1.2)  # enough to rank candidates
 FINALISTS = 6  # are judged once more on the whole course, which sees slow hunting
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -86,7 +84,7 @@ def tune(
 ) -> Settings:
     """The best settings found; the same seed finds the same."""
 
-    def cost(point: Vector, at_most: float) -> float:
+    def cost(point: Signal, at_most: float) -> float:
         return task.cost(task.design.settings(point), SHORT, at_most)
 
     found = search(cost, task.design.bounds, generations, members, seed, on_generation)

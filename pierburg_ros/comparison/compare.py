@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import from_standstill
 from pierburg_ros.estimation.run import resimulated
@@ -15,7 +15,6 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-Signal = NDArray[np.float64]
 STRETCH = 1.0
 """Length [s] of the stretch that is named as the worst; a quarter of a recording shorter than 4 s."""
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Diagnosis
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 DRIFT = math.log(6.0)
 """A base parameter is searched within this factor (logarithm) of its nominal value, either way."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from pierburg_ros.signals import Flags, Signal
+from pierburg_ros.arrays import Flags, Signal
 
 RANK = 1e-5
 """Singular values below this share of the largest are differences of rounding, not information."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, runs_of
@@ -17,7 +18,6 @@ from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
-from pierburg_ros.signals import Flags, Signal
 
 BLOCK = 1.5
 """Length of the blocks [s] that train, validate and test in turn: some movements and standstills in each part."""

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
@@ -15,7 +16,6 @@ from pierburg_ros.estimation.least_squares import Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 FULL = 25
 """Iterations after which a descent ends that still gains."""

@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded, sensitivity
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
-
-Signal = NDArray[np.float64]
 
 LONGEST = 250
 """Most samples at the start of a recording that say where the shaft stood."""

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.slopes import sharp
-from pierburg_ros.signals import Signal
 
 SURE = 1.96
 """Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pierburg_ros.signals import Flags, Signal
+from pierburg_ros.arrays import Flags, Signal
 
 Residual = Callable[[Signal], Signal]
 

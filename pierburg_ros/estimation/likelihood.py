@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED, STEP
-from pierburg_ros.signals import Signal
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured."""

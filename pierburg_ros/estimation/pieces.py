@@ -8,13 +8,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
-from pierburg_ros.signals import Signal
 
 SEEN = 1.0
 """Error of the angle, in noises of the sensor, that one unknown stretch of the input may cause without the simulation

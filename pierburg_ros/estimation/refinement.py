@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.signals import Signal
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import InitialState, first_standstill, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
@@ -15,7 +16,6 @@ from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
-from pierburg_ros.signals import Flags, Signal
 
 
 @dataclass(frozen=True)

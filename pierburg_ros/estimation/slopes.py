@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pierburg_ros.signals import Signal
+from pierburg_ros.arrays import Signal
 
 FINE = 1e-5
 """Difference step: a covariance needs the slope within its own interval."""

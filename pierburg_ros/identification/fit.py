@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.covariance import RANK, Covariance
 from pierburg_ros.estimation.data import data_of, rms
@@ -18,7 +19,6 @@ from pierburg_ros.estimation.refinement import COARSEST, refined
 from pierburg_ros.estimation.slopes import FINE
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
-from pierburg_ros.signals import Signal
 
 GOOD = 1.1
 """A fit whose RMSE is below this multiple of the noise needs no second start."""

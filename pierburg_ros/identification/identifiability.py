@@ -8,13 +8,13 @@ from itertools import combinations
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.slopes import sharp
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.recording.recording import Recording
-from pierburg_ros.signals import Signal
 
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below a tenth of it."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
@@ -18,7 +19,6 @@ from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.sensor import measured, quantised
 
-Signal = NDArray[np.float64]
 LONG_BEFORE = 10.0
 """Time [s] after which neither a delayed duty nor a current is still on its way."""
 

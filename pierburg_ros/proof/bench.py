@@ -7,15 +7,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.control import Controller, Settings
 from pierburg_ros.proof.excitation import duty_sequence, setpoint_sequence
 from pierburg_ros.proof.formulation import TextbookPlant
 from pierburg_ros.proof.trial import Trial
 from pierburg_ros.recording import Channel, write_simulated
-
-Signal = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pierburg_ros.arrays import Signal
 from pierburg_ros.comparison.compare import compare
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import read_model
@@ -45,7 +43,6 @@ RESULT = "result.json"
 PACKAGE = Path(__file__).parents[1]
 DIAGNOSING = ("actuators", "diagnosis", "effects", "estimation", "plant", "recording")
 """Folders whose sources a diagnosis depends on."""
-Signal = NDArray[np.float64]
 
 
 def prepare(trial: Trial, folder: Path) -> None:

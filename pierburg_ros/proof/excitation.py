@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Signal = NDArray[np.float64]
+from pierburg_ros.arrays import Signal
+
 Random = np.random.Generator
 ANGLE_LIMIT = (-0.035, 1.52)  # rad, setpoints a person gives, a little beyond the closed stop included
 

@@ -15,10 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 from pierburg_ros.processes import own_graph, running
-from pierburg_ros.proof.bench import Recorded, Signal, sampled
+from pierburg_ros.proof.bench import Recorded, sampled
 from pierburg_ros.proof.excitation import setpoint_sequence
 from pierburg_ros.proof.formulation import simulate_textbook
 from pierburg_ros.proof.trial import Trial

@@ -13,14 +13,13 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.proof.bench import Recorded
 from pierburg_ros.proof.formulation import simulate_textbook
 from pierburg_ros.proof.trial import Trial
 
-Signal = NDArray[np.float64]
 COARSE_STEP = 5e-5  # s, for differences between two simulations of the same formulation
 DRIFTING = (
     "armature_resistance",

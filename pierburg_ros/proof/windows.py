@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Signal = NDArray[np.float64]
+from pierburg_ros.arrays import Signal
+
 BLOCK = 0.2  # s, shortest window the contract allows
 
 

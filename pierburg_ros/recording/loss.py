@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
+
 Span = tuple[float, float]
 """Start and end [s]."""
-Signal = NDArray[np.float64]
 
 LOSSES = "pierburg_ros_losses"
 """Name of the MCAP metadata record in which the recorder says, by topic, how many messages it lost."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Signal = NDArray[np.float64]
+from pierburg_ros.arrays import Signal
 
 
 def noise_of(time: Signal, measured: Signal) -> float:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-from pierburg_ros.signals import Signal
 
 GRID = 0.02
 """Time step [s] on which missing torque is estimated."""

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
-from pierburg_ros.signals import Flags, Signal
 
 HALF_WINDOW = 0.02
 """Half the time [s] over which a velocity is taken; two samples where they are farther apart."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
@@ -18,7 +17,6 @@ from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
-Signal = NDArray[np.float64]
 Kind = Literal[
     "no_movement",
     "constant_duty",

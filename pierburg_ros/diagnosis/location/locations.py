@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
-
-Signal = NDArray[np.float64]
 
 FAST = 0.4
 """Share of the fastest travel of the recording from which a movement is called fast."""

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Regime
-
-Signal = NDArray[np.float64]
 
 BINS = 24
 """Ranges of about equal time into which a variable is cut."""

@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
-
-Signal = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 BIN = 0.1
 """Finest step of a window's ends [s]; coarser where a recording would have more than `MOST_BINS`."""

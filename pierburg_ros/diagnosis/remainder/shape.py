@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
 from pierburg_ros.estimation.data import Data, held_back, rms
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 ANGLES = 7
 """Nodes over the angle."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import promised
@@ -23,7 +24,6 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
-from pierburg_ros.signals import Signal
 
 FOLDS = 4
 """Parts into which the recordings are divided, each left out in turn."""

@@ -7,12 +7,10 @@ from collections.abc import Mapping
 
 import numpy as np
 import plotly.graph_objects as go
-from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Diagnosis, ResidualTorque
-
-Signal = NDArray[np.float64]
 
 BUCKETS = 1500
 """Stretches of time of which a curve shows the lowest and the highest sample."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.location.locations import locations
@@ -38,7 +39,6 @@ from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
 from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Flags, Signal
 
 
 def document(found: Found, conclusion: Conclusion) -> Diagnosis:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -13,7 +14,6 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 REDATED = np.arange(-4.0, 4.1, 0.25)
 """Where around its first estimate the moment of a change is looked for again [s]."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
@@ -21,7 +22,6 @@ from pierburg_ros.identification.experiment.explanations import refitted_names
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.identification.fit import fit
 from pierburg_ros.plant import Model
-from pierburg_ros.signals import Signal
 
 SEGMENTS = 4
 """Parts of the sequence, each of one recipe."""

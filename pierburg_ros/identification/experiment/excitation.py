@@ -7,13 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.paper.lumps import lumps
 from pierburg_ros.plant import Model
 
-Signal = NDArray[np.float64]
 Random = np.random.Generator
 RIGHT_ANGLE = math.pi / 2
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Channel, Recording
-
-Signal = NDArray[np.float64]
 
 
 def synthetic_recording(

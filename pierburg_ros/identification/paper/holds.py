@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import optimize
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-Signal = NDArray[np.float64]
 SHORTEST = 0.4
 """A hold must last this long [s], clear of the stops, to say where the shaft settles."""
 STOP_MARGIN = 0.02

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.covariance import RANK
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-from pierburg_ros.signals import Signal
 
 UNITS = {"time_constant": "s", "gain": "rad", "preload_angle": "rad", "friction_angle": "rad"}
 DUTY_UNITS = {"D_c": "1", "D_pre": "1"}

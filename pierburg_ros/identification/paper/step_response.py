@@ -10,15 +10,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import optimize
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Signal
 from pierburg_ros.identification.paper.holds import STOP_MARGIN, angle_of
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
 from pierburg_ros.recording import Recording
 
-Signal = NDArray[np.float64]
 FASTEST = 1e6
 """Largest pole that is tried [rad/s]."""
 
