@@ -7,14 +7,14 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "pierburg_ros"
-BASE = {"errors", "kernel", "processes"}
 ALLOWED = {
     "errors": set(),
     "kernel": set(),
     "processes": {"errors"},
+    "workers": {"errors"},
     "effects": {"errors", "kernel"},
     "actuators": {"errors", "kernel", "effects"},
-    "plant": {"errors", "kernel", "effects", "actuators"},
+    "plant": {"errors", "kernel", "workers", "effects", "actuators"},
     "control": {"errors", "kernel"},
     "recording": {"errors", "kernel"},
 }

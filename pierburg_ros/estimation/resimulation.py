@@ -67,7 +67,7 @@ class Resimulation:
         for state in sorted(set(states)):
             chosen = [index for index, other in enumerate(states) if other == state]
             group = [models[index] for index in chosen]
-            output[chosen] = simulate_many(group, self.inputs, times, *state, threads=threads)
+            output[chosen] = simulate_many(group, self.inputs, times, *state, jobs=threads)
         if self._decodes:
             closed, per_radian = self._nominal_scale
             output = (output - closed) / per_radian
