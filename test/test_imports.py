@@ -9,7 +9,8 @@ ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "pierburg_ros"
 ALLOWED = {
     "errors": set(),
-    "kernel": set(),
+    "kernel_cache": set(),
+    "kernel": {"kernel_cache"},
     "processes": {"errors"},
     "workers": {"errors"},
     "effects": {"errors", "kernel"},
