@@ -6,6 +6,7 @@ listing the commands loads and compiles nothing.
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -74,6 +75,7 @@ def options(version: Annotated[bool, VERSION] = False) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; what a person gave wrongly ends as one line on stderr and exit status 2."""
+    show_log()
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     called = next((argument for argument in given if argument in COMMANDS), None)
     try:
@@ -92,6 +94,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
         refuse(f"{error.format_message()} See 'pierburg {called or ''} --help'.".replace("  ", " "))
     raise SystemExit(status if isinstance(status, int) else 0)
+
+
+def show_log() -> None:
+    """Show on stderr what the package logs, such as a wait for the compiler; it is silent as a library."""
+    log = logging.getLogger("pierburg_ros")
+    if not log.handlers:
+        log.addHandler(logging.StreamHandler())
+        log.setLevel(logging.INFO)
 
 
 def refuse(reason: str) -> NoReturn:

@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
 from pierburg_ros.closed_loop.judgement import Judgement, judge
@@ -44,6 +45,7 @@ def tune(
         Path | None,
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
     ] = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue."""
     for path in (output, compare):
@@ -55,7 +57,7 @@ def tune(
     judgements = []
     for name in names:
         task = Task(DESIGNS[name], goal, plants)
-        judgements.append(tuned(task, generations, members, seed))
+        judgements.append(tuned(task, generations, members, seed, jobs))
     write_whole(output, parameter_file(judgements[0].settings, heading(goal, judgements[0])))
     if compare is not None:
         document = compare.read_text(encoding="utf-8") if compare.exists() else ""
@@ -63,7 +65,7 @@ def tune(
     Console().print(summary(goal, judgements), f"Parameters in {output}")
 
 
-def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
+def tuned(task: Task, generations: int, members: int, seed: int, jobs: int | None = None) -> Judgement:
     """Tune one controller and judge it, with progress on stderr."""
     shown = (
         TextColumn("{task.description}"),
@@ -79,8 +81,8 @@ def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
         def searched(best: float) -> None:
             progress.update(searching, advance=1, state=f"cost {best:.3f}")
 
-        settings = find_settings(task, generations, members, seed, searched)
-        return judge(task.design, settings, task.plants, lambda: progress.advance(judging))
+        settings = find_settings(task, generations, members, seed, searched, jobs)
+        return judge(task.design, settings, task.plants, lambda: progress.advance(judging), jobs)
 
 
 def heading(goal: Goal, judgement: Judgement) -> list[str]:

@@ -48,10 +48,12 @@ def diagnose(
     recordings: Sequence[Recording],
     nominal: Model,
     progress: Progress = lambda _: None,
+    jobs: int | None = None,
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone.
 
-    `progress` is told what is being tried. InputError where the recordings cannot be used.
+    `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core.
+    InputError where the recordings cannot be used.
     """
     quality.refuse_unusable(recordings)
     exploration = explored(evidence_of(recordings, nominal.actuator), nominal, progress)

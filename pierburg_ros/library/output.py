@@ -19,7 +19,7 @@ def output_folder(output: Path) -> Iterator[Path]:
     Files of an earlier run keep their place in `output` unless a file of the same name replaces them.
     """
     if output.exists() and not output.is_dir():
-        raise InputError(f"{output} is a file, expected a folder for the results. Choose another --output.")
+        raise InputError(f"{output} is a file, expected a folder for the results. Choose another folder.")
     present = next(parent for parent in output.resolve().parents if parent.exists())
     folder = Path(tempfile.mkdtemp(prefix=f".{output.name}-", dir=present))
     try:
