@@ -9,7 +9,7 @@ Stage = Literal["input", "drive", "transmission", "load", "friction", "sensor"]
 
 LUGRE = "Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Automatic Control 40 (1995) 419-425"
 ARMSTRONG = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083-1138"
-CONTRACT = "section 7 of the interface contract"
+CONTRACT = "section 7 of docs/contract.md"
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ class Identification:
     noise: float
 
     def as_mapping(self) -> dict[str, Any]:
-        """The content of identification.json (section 5 of the contract)."""
+        """The content of identification.json (section 5 of docs/contract.md)."""
         return {
             "schema": 1,
             "parameters": {name: self._parameter(name) for name in self.findings},
