@@ -1,4 +1,4 @@
-# `make demo` shows the main job, `make test` runs every check; both set up .venv first, once.
+# `make demo` shows the main job, `make test` runs every check, `make quick` the quick tests; all set up .venv first, once.
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -9,7 +9,7 @@ PYTHON := $(shell for name in python3.13 python3.12 python3.11 python3.10 python
 	"$$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' \
 	2>/dev/null && echo "$$name" && break; done)
 
-.PHONY: demo test lint types library nodes colcon benchmarks clean
+.PHONY: demo test quick lint types library nodes colcon benchmarks clean
 
 demo: $(STAMP)
 	$(BIN)/pierburg demo
@@ -31,6 +31,10 @@ types: $(STAMP)
 
 library: $(STAMP)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m 'not ros'
+
+# What to run while changing something: all but whole searches, compiling anew, and processes over DDS.
+quick: $(STAMP)
+	$(BIN)/python -m pytest -n auto --dist loadfile -m 'not ros and not search'
 
 # Processes over DDS can be starved on a shared machine; a failure is tried again and shown as such. One worker
 # process runs the tests, so that a crash of the middleware's own code is a failure like any other.

@@ -1,11 +1,23 @@
 """The package as ament_python, colcon and pip see it."""
 
+import sys
 from glob import glob
 
 from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
+NODES = ("plant", "controller", "recorder")
 COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "prove", "tune")
+# colcon and the build farm of ROS call `setup.py install` or `develop`, which put executables into lib/pierburg_ros
+# (setup.cfg), where `ros2 run pierburg_ros NAME` finds them. pip never does: with it they would crowd the path.
+FOR_ROS_RUN = (
+    [
+        *(f"{name} = pierburg_ros.nodes.{name}:main" for name in NODES),
+        *(f"{name} = pierburg_ros.cli.app:{name}" for name in COMMANDS),
+    ]
+    if {"install", "develop"} & set(sys.argv)
+    else []
+)
 ROS_WHEELS = [
     "ros-jazzy-rclpy[fastrtps]",
     "ros-jazzy-std-msgs",
@@ -27,6 +39,7 @@ TEST_TOOLS = [
     "scikit-fuzzy",
     "networkx",
     "packaging",
+    "pandas",
 ]
 
 setup(
@@ -63,15 +76,9 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "benchmarks": ["mujoco"]},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "benchmarks": ["mujoco"]},
     entry_points={
-        "console_scripts": [
-            "pierburg = pierburg_ros.cli.app:main",
-            "plant = pierburg_ros.nodes.plant:main",
-            "controller = pierburg_ros.nodes.controller:main",
-            "recorder = pierburg_ros.nodes.recorder:main",
-            *(f"{name} = pierburg_ros.cli.app:{name}" for name in COMMANDS),
-        ]
+        "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },
     zip_safe=True,
 )

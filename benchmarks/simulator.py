@@ -138,7 +138,7 @@ def many_sets() -> list[str]:
     rates: dict[int, list[float]] = {1: [], 2: []}
     for _ in range(3):
         for threads, found in rates.items():
-            taken = best(lambda threads=threads: simulate_many(sets, inputs, times, threads=threads), 1)
+            taken = best(lambda threads=threads: simulate_many(sets, inputs, times, jobs=threads), 1)
             found.append(SETS / taken)
     one, two = (statistics.median(found) for found in rates.values())
     return [

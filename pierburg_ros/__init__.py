@@ -1,1 +1,69 @@
-"""The Pierburg mechatronic actuator: simulated, controlled, recorded, diagnosed."""
+"""Simulates, controls and diagnoses the Pierburg mechatronic actuator.
+
+    import pierburg_ros as pr
+
+    recording = pr.read("bench.csv")
+    print(pr.compare(recording, pr.Model.nominal("pierburg")).rmse)
+    diagnosis = pr.diagnose(recording)
+    diagnosis.save("results/diagnosis")
+
+Nothing is loaded, compiled or touched on disk before it is used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pierburg_ros.errors import InputError
+    from pierburg_ros.library.comparing import Comparison, compare
+    from pierburg_ros.library.diagnosing import Diagnosis, diagnose
+    from pierburg_ros.library.identifying import Identification, identify
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.library.reading import read
+    from pierburg_ros.library.simulation import Simulation, simulate
+    from pierburg_ros.recording import Recording
+
+__all__ = [
+    "Comparison",
+    "Diagnosis",
+    "Identification",
+    "InputError",
+    "Model",
+    "Recording",
+    "Simulation",
+    "compare",
+    "diagnose",
+    "identify",
+    "read",
+    "simulate",
+]
+
+_HOME = {
+    "Comparison": "library.comparing",
+    "Diagnosis": "library.diagnosing",
+    "Identification": "library.identifying",
+    "InputError": "errors",
+    "Model": "library.model",
+    "Recording": "recording",
+    "Simulation": "library.simulation",
+    "compare": "library.comparing",
+    "diagnose": "library.diagnosing",
+    "identify": "library.identifying",
+    "read": "library.reading",
+    "simulate": "library.simulation",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """What is imported on its first use (PEP 562)."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

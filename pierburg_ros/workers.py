@@ -1,6 +1,6 @@
 """The one place where work is spread over cores.
 
-The kernels release the interpreter lock, so threads suffice. Linear algebra within them keeps to one thread each:
+Compiled code releases the interpreter lock, so threads suffice. Linear algebra within them keeps to one thread each:
 its own threads would fight with ours for the same cores.
 """
 

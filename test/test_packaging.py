@@ -1,7 +1,11 @@
 """What pip, colcon and ROS read of the package, against what the package is."""
 
 import re
+import shutil
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -66,7 +70,7 @@ def test_the_launch_file_names_executables_and_parameter_files_that_exist():
     _, nodes = launched()
     assert [node["executable"] for node in nodes] == ["plant", "controller", "recorder"]
     for node in nodes:
-        assert f'"{node["executable"]} = pierburg_ros.nodes.{node["executable"]}:main"' in SETUP
+        assert node["executable"] in entry_points("install")
         assert Path(node["parameters"][0]).exists()
 
 
@@ -98,6 +102,46 @@ def test_the_launch_file_gives_only_parameters_that_exist():
 def test_the_launch_file_leaves_the_recorder_out_when_told():
     _, nodes = launched(record="false")
     assert [node["name"] for node in nodes] == ["plant", "controller"]
+
+
+def entry_points(*arguments):
+    """Executables that setup.py declares when it is called with these arguments."""
+    code = (
+        "import sys; from distutils.core import run_setup; "
+        "print(*run_setup('setup.py', sys.argv[1:], stop_after='init').entry_points['console_scripts'], sep=chr(10))"
+    )
+    command = [sys.executable, "-c", f"import setuptools; {code}", *arguments]
+    lines = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    return dict(line.split(" = ") for line in lines)
+
+
+@pytest.mark.parametrize("arguments", [["install", "--record", "files"], ["develop", "--editable"]])
+def test_colcon_gets_an_executable_for_every_node_and_command(arguments):
+    from pierburg_ros.cli.app import COMMANDS
+    from pierburg_ros.cli.run import NODES
+
+    found = entry_points(*arguments)
+    assert set(found) == {"pierburg", *NODES, *COMMANDS} - {"run"}
+    for target in found.values():
+        module, function = target.split(":")
+        assert callable(getattr(import_module(module), function))
+
+
+def test_pip_puts_the_one_command_on_the_path(tmp_path):
+    source, wheels, prefix = tmp_path / "source", tmp_path / "wheels", tmp_path / "prefix"
+    source.mkdir()
+    for name in ("pierburg_ros", "launch", "config", "resource"):
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml"):
+        shutil.copy(ROOT / name, source)
+    pip = [sys.executable, "-m", "pip", "--quiet"]
+    quick = ["--no-deps", "--no-index"]
+    subprocess.run([*pip, "wheel", *quick, "--no-build-isolation", "-w", wheels, source], check=True)
+    subprocess.run([*pip, "install", *quick, "--no-compile", "--prefix", prefix, *wheels.iterdir()], check=True)
+    assert [path.name for path in (prefix / "bin").iterdir()] == ["pierburg"]
+    installed = {path.name for path in prefix.rglob("*") if path.is_file()}
+    data = [path for path in (ROOT / "pierburg_ros").rglob("*") if path.suffix in (".yaml", ".html", ".typed")]
+    assert data and installed >= {path.name for path in data}
 
 
 def parameters(file):

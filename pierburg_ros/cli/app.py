@@ -6,6 +6,7 @@ listing the commands loads and compiles nothing.
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 import threading
@@ -81,6 +82,7 @@ def options(version: Annotated[bool, VERSION] = False) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; what a person gave wrongly ends as one line on stderr and exit status 2."""
+    show_log()
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     called = next((argument for argument in given if argument in COMMANDS), None)
     try:
@@ -125,6 +127,14 @@ def terminable() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def show_log() -> None:
+    """Show on stderr what the package logs, such as a wait for the compiler; it is silent as a library."""
+    log = logging.getLogger("pierburg_ros")
+    if not log.handlers:
+        log.addHandler(logging.StreamHandler())
+        log.setLevel(logging.INFO)
 
 
 def refuse(reason: str) -> NoReturn:

@@ -11,19 +11,19 @@ import typer
 from rich.console import Console, Group
 from rich.table import Table
 
-from pierburg_ros.actuators import read_actuator
-from pierburg_ros.cli.diagnose import diagnosed_with_progress, write_diagnosis
+from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
-from pierburg_ros.cli.output import output_folder
-from pierburg_ros.cli.replay import summary, write_replay
+from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.comparison.compare import Comparison, compare
 from pierburg_ros.control import Controller
 from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.plant import Model, Plant
+from pierburg_ros.library.comparing import Comparison, compare
+from pierburg_ros.library.model import Model
+from pierburg_ros.library.output import output_folder
+from pierburg_ros.library.reading import read
+from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
-from pierburg_ros.recording import read_recording
 
 SETPOINTS = (
     (0.0, 0.0), (1.0, 0.35), (4.0, 0.87), (7.0, 1.22), (10.0, 0.61), (13.0, 1.05), (15.0, 1.12), (17.0, 0.98),
@@ -50,12 +50,9 @@ def demo(
     console = terminal()
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
-        console.print(replayed(folder, recording, Model.nominal(read_actuator("pierburg"))))
-        console.print(
-            diagnosed(
-                folder / "diagnosis", recorded_run(folder, "concealed.mcap", {"model": str(CONCEALED)}, True, console)
-            )
-        )
+        console.print(replayed(folder, recording, Model.nominal("pierburg")))
+        concealed = recorded_run(folder, "concealed.mcap", {"model": str(CONCEALED)}, True, console)
+        console.print(diagnosed(folder / "diagnosis", concealed))
         runs = sorted(real.glob("*.mcap"))
         if runs:
             console.print(replayed_bench(folder / "xl330", runs))
@@ -100,7 +97,7 @@ def write_setpoints(path: Path) -> None:
 
 def compile_kernels() -> None:
     """Have the kernels of the nodes in the cache, so that no node has to compile while others wait for it."""
-    Plant(Model.nominal(read_actuator("pierburg"))).advance(0.0, 0.002)
+    Plant(Model.nominal("pierburg")).advance(0.0, 0.002)
     controller = Controller()
     controller.step(0.0, 0.42, 0.002)
     controller.change(controller.settings)
@@ -108,37 +105,34 @@ def compile_kernels() -> None:
 
 def diagnosed(folder: Path, recording: Path) -> Group:
     """Diagnose a recording as a user would, with nothing but its path, and give what a terminal shows."""
-    result = diagnosed_with_progress([read_recording(recording)], Model.nominal(read_actuator("pierburg")))
-    folder.mkdir()
-    write_diagnosis(folder, result)
-    return Group(f"{recording.name} and nothing else, diagnosed:", shown(result.diagnosis))
+    diagnosis = diagnosed_with_progress([read(recording)], Model.nominal("pierburg"))
+    diagnosis.save(folder)
+    return Group(f"{recording.name} and nothing else, diagnosed:", shown(diagnosis.document))
 
 
 def replayed(folder: Path, recording: Path, model: Model) -> Table:
     """Write the files of a replay and give its summary."""
-    comparison = compare(model, read_recording(recording))
-    write_replay(folder, comparison)
+    comparison = compare(recording, model)
+    comparison.save(folder)
     return summary(comparison)
 
 
 def replayed_bench(folder: Path, runs: list[Path]) -> Table:
     """Replay measured runs of the pendulum bench against its Coulomb-and-viscous model, one row each."""
-    model = Model.nominal(read_actuator("xl330"))
+    model = Model.nominal("xl330")
     table = Table(title=f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
     for heading in ("run", "RMSE [rad]", "variance explained", "worst stretch [s]"):
         table.add_column(heading, justify="left" if heading == "run" else "right")
     for run in runs:
-        comparison = compare(model, read_recording(run))
-        target = folder / run.stem
-        target.mkdir(parents=True)
-        write_replay(target, comparison)
+        comparison = compare(run, model)
+        comparison.save(folder / run.stem)
         table.add_row(*bench_row(run, comparison))
     return table
 
 
 def bench_row(run: Path, comparison: Comparison) -> tuple[str, ...]:
     """One row of the table of measured runs."""
-    explained = comparison.variance_explained
+    explained, worst = comparison.found.variance_explained, comparison.found.worst
     share = "nothing moved" if explained is None else f"{100 * explained:.1f} %"
-    stretch = f"{comparison.worst.start:.2f} to {comparison.worst.end:.2f}"
+    stretch = f"{worst.start:.2f} to {worst.end:.2f}"
     return run.stem, f"{comparison.rmse:.3f}", share, stretch

@@ -9,16 +9,17 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.output import output_folder
+from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
 from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.diagnosis.diagnose import diagnose as diagnosis_of
-from pierburg_ros.diagnosis.report.page import write_page, write_picture
 from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.diagnosis.result import Result
-from pierburg_ros.plant import Model
-from pierburg_ros.recording import Recording, read_recording
+from pierburg_ros.library.diagnosing import Diagnosis
+from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
+from pierburg_ros.library.model import Model
+from pierburg_ros.library.output import output_folder
+from pierburg_ros.library.reading import read
+from pierburg_ros.recording import Recording
 
 
 def diagnose(
@@ -28,34 +29,31 @@ def diagnose(
     model: ModelOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
     Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
     """
-    nominal = chosen_model(model, actuator if actuator or model else "pierburg")
-    measured = [read_recording(path, time=time, topics=topics_of(topic)) for path in recordings]
+    nominal = chosen_or_valve(model, actuator)
+    measured = [read(path, time=time, topics=topics_of(topic)) for path in recordings]
     with output_folder(output) as folder:
-        result = diagnosed_with_progress(measured, nominal)
-        write_diagnosis(folder, result)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs)
+        diagnosis.write_into(folder)
     terminal().print(
-        shown(result.diagnosis), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
+        shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
     )
 
 
-def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model) -> Result:
+def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model, jobs: int | None = None) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
         task = bar.add_task("reading", total=None)
-        return diagnosis_of(recordings, nominal, lambda tried: bar.update(task, advance=1, description=tried))
 
+        def tell(tried: str) -> None:
+            bar.update(task, advance=1, description=tried)
 
-def write_diagnosis(folder: Path, result: Result) -> None:
-    """The files of a diagnosis in `folder`."""
-    result.diagnosis.write(folder / "diagnosis.json")
-    result.model.write(folder / "model.yaml")
-    write_page(folder / "report.html", result)
-    write_picture(folder / "overview.png", result)
+        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs)
 
 
 def _progress() -> Progress:

@@ -12,9 +12,7 @@ from rich.console import Console
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.cli.graph_experiment import play
-from pierburg_ros.cli.identify import starting_model
-from pierburg_ros.cli.models import ActuatorOption, ModelOption
-from pierburg_ros.cli.output import output_folder
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop import simulate_loop
@@ -31,6 +29,7 @@ from pierburg_ros.identification.experiment.excitation import (
 )
 from pierburg_ros.identification.experiment.explanations import explanation
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.library.output import output_folder
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
 from pierburg_ros.recording.write import write_simulated
@@ -81,7 +80,7 @@ def experiment(
         )
     if graph:
         require_ros()
-    base, console = starting_model(model, actuator), terminal()
+    base, console = chosen_or_valve(model, actuator), terminal()
     with output_folder(output) as folder:
         if discriminate is not None:
             chosen = designed(folder, console, base, discriminate, duration or 60.0, rate, noise, limit)

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from pierburg_ros.actuators import read_actuator
-from pierburg_ros.cli.models import ActuatorOption, ModelOption
-from pierburg_ros.cli.output import output_folder
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.comparison.plot import write_picture
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import from_standstill
 from pierburg_ros.identification.identify import Identification
-from pierburg_ros.identification.identify import identify as identify_recordings
 from pierburg_ros.identification.paper.table_one import audit as audit_checks
-from pierburg_ros.identification.plot import write_page, write_static
 from pierburg_ros.identification.table import (
     audit_lines,
     lump_table,
@@ -29,8 +22,10 @@ from pierburg_ros.identification.table import (
     parameter_table,
     reasons,
 )
-from pierburg_ros.plant import Model, read_model
-from pierburg_ros.recording import Recording, read_recording
+from pierburg_ros.library import identifying
+from pierburg_ros.library.model import Model
+from pierburg_ros.library.output import output_folder
+from pierburg_ros.library.reading import read, taken_up
 
 
 def identify(
@@ -45,6 +40,7 @@ def identify(
     audit: Annotated[bool, typer.Option("--audit", help="Check Table I against itself.")] = False,
     topic: TopicOption = None,
     time: TimeOption = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Identify an actuator from recordings: static characteristic, step response, fit of all samples.
 
@@ -60,44 +56,22 @@ def identify(
             "identify found no recording or no --output, expected both, or --audit. Write pierburg identify"
             " run.mcap --output DIR."
         )
-    start = starting_model(model, actuator)
-    read = (read_recording(path, time=time, topics=topics_of(topic)) for path in recordings)
-    measured = [from_standstill(recording, start) for recording in read]
+    start = chosen_or_valve(model, actuator)
+    measured = [read(path, time=time, topics=topics_of(topic)) for path in recordings]
     with output_folder(output) as folder:
         with terminal(stderr=True).status("fitting whole recordings"):
-            found = identify_recordings(start, measured, free or (), fix or ())
-        write_results(folder, found, measured)
-    for recording in measured:
+            identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)
+        identified.write_into(folder)
+    for recording in identified.recordings:
         if late := taken_up(recording):
             console.print(f"{recording.name}{late}", soft_wrap=True)
-    print_results(console, found, output)
-
-
-def starting_model(model: Path | None, actuator: str | None) -> Model:
-    """The model file given, or the nominal actuator; the Pierburg valve where neither is named."""
-    described = read_actuator(actuator) if actuator is not None else None
-    if model is not None:
-        return read_model(model, described)
-    return Model.nominal(described or read_actuator("pierburg"))
+    print_results(console, identified.found, output)
 
 
 def print_audit(console: Console) -> None:
     """Print what Table I implies about itself."""
-    lines = audit_lines(audit_checks(Model.nominal(read_actuator("pierburg"))))
+    lines = audit_lines(audit_checks(Model.nominal("pierburg")))
     console.print("\n".join(lines), soft_wrap=True)
-
-
-def write_results(folder: Path, found: Identification, measured: list[Recording]) -> None:
-    """Write the results into `folder` in every form."""
-    text = json.dumps(found.as_mapping(), indent=1, allow_nan=False)
-    (folder / "identification.json").write_text(text + "\n", encoding="utf-8")
-    found.fitted.model.write(folder / "model.yaml")
-    write_page(folder / "identification.html", found, measured)
-    first = measured[0]
-    simulated = first.measured - found.fitted.residuals[0]
-    write_picture(folder / "fit.png", Comparison(first, found.fitted.model, simulated))
-    if found.static is not None:
-        write_static(folder / "static_characteristic.png", found.static, found.model.actuator.upper_stop)
 
 
 def print_results(console: Console, found: Identification, output: Path) -> None:

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant import Model, read_model
+from pierburg_ros.library import model as library
+from pierburg_ros.library.model import Model
 
 ModelOption = Annotated[Path | None, typer.Option("--model", help="Model file to simulate with.")]
 ActuatorOption = Annotated[
@@ -19,9 +19,11 @@ ActuatorOption = Annotated[
 
 def chosen_model(model: Path | None, actuator: str | None) -> Model:
     """The model of the file `model`, or the nominal one of `actuator`."""
-    described = read_actuator(actuator) if actuator is not None else None
-    if model is not None:
-        return read_model(model, described)
-    if described is None:
+    if model is None and actuator is None:
         raise InputError("Found neither --model nor --actuator, expected one. Add --actuator pierburg.")
-    return Model.nominal(described)
+    return library.chosen_model(model, actuator)
+
+
+def chosen_or_valve(model: Path | None, actuator: str | None) -> Model:
+    """`chosen_model`; the nominal Pierburg valve where neither is named."""
+    return library.chosen_model(model, actuator if actuator or model else "pierburg")

@@ -17,6 +17,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
+from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.proof import document, run
@@ -30,7 +31,7 @@ def prove(
     trials: Annotated[int | None, typer.Option(min=1, help="Trials of each kind in place of the full run.")] = None,
     only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
-    workers: Annotated[int | None, typer.Option(min=1, help="Trials at a time; default: cores.")] = None,
+    jobs: JobsOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
@@ -55,7 +56,7 @@ def prove(
     ) as progress:
         reporter = Reporter(progress, plan.size)
         command = None if generate_only else DIAGNOSE
-        results = run.prove(output, plan, workers=workers, command=command, report=reporter)
+        results = run.prove(output, plan, workers=jobs, command=command, report=reporter)
     if generate_only:
         terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
         return

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording import Recording
 
 TopicOption = Annotated[
     list[str] | None,
@@ -37,9 +36,3 @@ def topics_of(options: Sequence[str] | None) -> dict[str, str]:
             raise InputError(f"--topic found {option!r}, expected SIGNAL=NAME. Write --topic duty=/bench/pwm.")
         topics[signal] = name
     return topics
-
-
-def taken_up(recording: Recording) -> str:
-    """What to add about a recording that begins in motion and is taken up later; nothing for others."""
-    begin = recording.time[0]
-    return f"; begins in motion, simulated from its first standstill at {begin:.2f} s" if begin > 0.0 else ""

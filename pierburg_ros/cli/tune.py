@@ -11,7 +11,7 @@ import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from pierburg_ros.cli.output import write_whole
+from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
@@ -22,6 +22,7 @@ from pierburg_ros.closed_loop.tune import STATED, Task
 from pierburg_ros.closed_loop.tune import tune as find_settings
 from pierburg_ros.control import parameter_file
 from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import write_whole
 
 
 def tune(
@@ -43,6 +44,7 @@ def tune(
         Path | None,
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
     ] = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue."""
     for path in (output, compare):
@@ -54,7 +56,7 @@ def tune(
     judgements = []
     for name in names:
         task = Task(DESIGNS[name], goal, plants)
-        judgements.append(tuned(task, generations, members, seed))
+        judgements.append(tuned(task, generations, members, seed, jobs))
     write_whole(output, parameter_file(judgements[0].settings, heading(goal, judgements[0])))
     if compare is not None:
         document = compare.read_text(encoding="utf-8") if compare.exists() else ""
@@ -62,7 +64,7 @@ def tune(
     terminal().print(summary(goal, judgements), f"Parameters in {output}")
 
 
-def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
+def tuned(task: Task, generations: int, members: int, seed: int, jobs: int | None = None) -> Judgement:
     """Tune one controller and judge it, with progress on stderr."""
     shown = (
         TextColumn("{task.description}"),
@@ -78,8 +80,8 @@ def tuned(task: Task, generations: int, members: int, seed: int) -> Judgement:
         def searched(best: float) -> None:
             progress.update(searching, advance=1, state=f"cost {best:.3f}")
 
-        settings = find_settings(task, generations, members, seed, searched)
-        return judge(task.design, settings, task.plants, lambda: progress.advance(judging))
+        settings = find_settings(task, generations, members, seed, searched, jobs)
+        return judge(task.design, settings, task.plants, lambda: progress.advance(judging), jobs)
 
 
 def heading(goal: Goal, judgement: Judgement) -> list[str]:

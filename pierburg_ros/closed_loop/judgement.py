@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import astuple, dataclass, fields
 from functools import partial
 
@@ -19,6 +18,7 @@ from pierburg_ros.closed_loop.plants import NOMINAL
 from pierburg_ros.closed_loop.tune import NOISE, RATE
 from pierburg_ros.control import Settings
 from pierburg_ros.plant import Model
+from pierburg_ros.workers import workers
 
 SEEDS = range(100, 110)  # none of those that tuning saw
 PLACE = {field.name: place for place, field in enumerate(fields(Metrics))}
@@ -60,10 +60,11 @@ def judge(
     settings: Settings,
     plants: Mapping[str, Model],
     on_plant: Callable[[], None] = lambda: None,
+    jobs: int | None = None,
 ) -> Judgement:
-    """Run a tuned controller over the whole course on every plant."""
+    """Run a tuned controller over the whole course on every plant, `jobs` runs at a time."""
     responses = {}
-    with ThreadPoolExecutor() as pool:
+    with workers(jobs) as pool:
         for name, model in plants.items():
             responses[name] = np.array(list(pool.map(partial(respond, design, settings, model), SEEDS)))
             on_plant()

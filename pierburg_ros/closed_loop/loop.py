@@ -1,4 +1,4 @@
-"""Controller and plant in one compiled loop, tick by tick as section 2 of the contract orders them.
+"""Controller and plant in one compiled loop, tick by tick as section 2 of docs/contract.md orders them.
 
 At t_k the plant samples the shaft and takes the newest duty, the one computed from the sample before; that
 duty acts until t_(k+1). Meanwhile the controller answers sample k.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.workers import workers
 
 Cost = Callable[[Signal, float], float]  # cost of a point; may stop counting above the second argument
 
@@ -33,15 +33,16 @@ def search(
     members: int,
     seed: int = 0,
     on_generation: Callable[[float], None] = lambda best: None,
+    jobs: int | None = None,
 ) -> Population:
-    """The last population of a search for the least `cost` within `bounds`; `cost` runs on every core.
+    """The last population of a search for the least `cost` within `bounds`, `jobs` costs at a time.
 
     Differential evolution after Storn and Price, Journal of Global Optimization 11 (1997) 341-359.
     """
     random = np.random.default_rng(seed)
     low, high = np.array(bounds, dtype=float).T
     points = random.uniform(low, high, (members, low.size))
-    with ThreadPoolExecutor() as pool:
+    with workers(jobs) as pool:
         costs = np.array(list(pool.map(cost, points, [np.inf] * members)))
         for _ in range(generations):
             candidates = offspring(random, points, points[costs.argmin()], low, high)

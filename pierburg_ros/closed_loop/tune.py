@@ -81,12 +81,13 @@ def tune(
     members: int,
     seed: int = 1,
     on_generation: Callable[[float], None] = lambda best: None,
+    jobs: int | None = None,
 ) -> Settings:
-    """The best settings found; the same seed finds the same."""
+    """The best settings found, `jobs` candidates tried at a time; the same seed finds the same."""
 
     def cost(point: Signal, at_most: float) -> float:
         return task.cost(task.design.settings(point), SHORT, at_most)
 
-    found = search(cost, task.design.bounds, generations, members, seed, on_generation)
+    found = search(cost, task.design.bounds, generations, members, seed, on_generation, jobs)
     finalists = [task.design.settings(point) for point in found.points[:FINALISTS]]
     return min(finalists, key=lambda settings: task.cost(settings, Course()))

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import from_standstill
 from pierburg_ros.estimation.run import resimulated
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -102,12 +100,5 @@ class Comparison:
 
 def compare(model: Model, recording: Recording) -> Comparison:
     """`recording` beside the answer of `model` to its inputs, from where the shaft is first seen at rest."""
-    recording = from_standstill(recording, Model.nominal(model.actuator))
-    simulated = resimulated(model, recording)
-    lost = np.flatnonzero(~np.isfinite(simulated))
-    if lost.size:
-        raise InputError(
-            f"{recording.name}: the model cannot be simulated beyond {recording.time[lost[0]]:.3f} s,"
-            " expected a finite motion. Check the values in the model file."
-        )
+    recording, simulated = resimulated(model, recording)
     return Comparison(recording, model, simulated)

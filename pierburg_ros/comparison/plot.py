@@ -1,8 +1,6 @@
-"""Plots of a comparison: measured and simulated, residual, duty; as an interactive page and as a picture."""
+"""Plots of a comparison: measured and simulated, residual, duty; to be zoomed and to be printed."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import plotly.graph_objects as go
@@ -30,8 +28,8 @@ def duty_percent(comparison: Comparison) -> np.ndarray:
     return 100.0 * comparison.recording.duty.at(comparison.recording.time, before=0.0)
 
 
-def write_page(path: Path, comparison: Comparison) -> None:
-    """Write a page that needs no network, with zoom and values under the pointer."""
+def page(comparison: Comparison) -> go.Figure:
+    """Measured and simulated, residual, and duty over time, as a Plotly figure."""
     recording = comparison.recording
     figure = make_subplots(rows=3, shared_xaxes=True, row_heights=[0.5, 0.3, 0.2], vertical_spacing=0.04)
     rows = (
@@ -49,12 +47,11 @@ def write_page(path: Path, comparison: Comparison) -> None:
     figure.update_yaxes(title_text=f"residual [{recording.unit}]", row=2)
     figure.update_yaxes(title_text="duty [%]", row=3)
     figure.update_xaxes(title_text="time [s]", row=3)
-    figure.update_layout(title=title(comparison), template="plotly_white", height=800)
-    figure.write_html(path, include_plotlyjs=True)
+    return figure.update_layout(title=title(comparison), template="plotly_white", height=800)
 
 
-def write_picture(path: Path, comparison: Comparison) -> None:
-    """Write the same three plots as a PNG."""
+def picture(comparison: Comparison) -> Figure:
+    """The same three plots as a Matplotlib figure."""
     recording = comparison.recording
     figure = Figure(figsize=(10, 6.5), layout="constrained")
     FigureCanvasAgg(figure)
@@ -75,4 +72,4 @@ def write_picture(path: Path, comparison: Comparison) -> None:
     residual.set_ylabel(f"residual [{recording.unit}]")
     duty.set_ylabel("duty [%]")
     duty.set_xlabel("time [s]")
-    figure.savefig(path, dpi=120)
+    return figure

@@ -1,4 +1,4 @@
-"""Which setpoint is in force: the rules of the contract, section 2."""
+"""Which setpoint is in force: the rules of section 2 of docs/contract.md."""
 
 from __future__ import annotations
 

@@ -25,7 +25,8 @@ def diagnose(
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
-    `progress` is told what is being tried. InputError where the recordings cannot be used.
+    `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core.
+    InputError where the recordings cannot be used.
     """
     data = evidence(recordings, nominal)
     found = search(data, nominal, progress, jobs)

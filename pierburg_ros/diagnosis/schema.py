@@ -1,4 +1,4 @@
-"""diagnosis.json, schema 1 (section 5 of the contract): every field with its unit; null where no number exists."""
+"""diagnosis.json, schema 1 (section 5 of docs/contract.md): every field with its unit; null where there is none."""
 
 from __future__ import annotations
 

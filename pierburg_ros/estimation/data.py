@@ -12,7 +12,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
-from pierburg_ros.estimation.run import Run, Switch, runs_of
+from pierburg_ros.estimation.run import Run, Switch, parts_of, run_of
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
@@ -99,8 +99,8 @@ def data_of(recordings: Sequence[Recording], model: Model) -> Data:
         raise InputError("There is no recording to fit; expected one or more. Name a file.")
     if len({recording.quantity for recording in recordings}) > 1:
         raise InputError("The recordings hold Hall voltage and position; expected one quantity. Fit them one by one.")
-    cut = [runs_of(recording, model, number) for number, recording in enumerate(recordings)]
-    runs = tuple(run for parts, _ in cut for run in parts)
+    cut = [parts_of(recording, model) for recording in recordings]
+    runs = tuple(run_of(part, model, number) for number, (parts, _) in enumerate(cut) for part in parts)
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
     left_out = tuple((number, span) for number, (_, found) in enumerate(cut) for span in found.left_out)

@@ -12,7 +12,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
-from pierburg_ros.estimation.least_squares import Solution, jacobian, minimise
+from pierburg_ros.estimation.least_squares import Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
@@ -66,10 +66,14 @@ class Fit:
 
 
 class Estimator:
-    """Fits explanations by one nominal model to the training samples of some recordings."""
+    """Fits explanations by one nominal model to the training samples of some recordings.
 
-    def __init__(self, data: Data, nominal: Model) -> None:
+    `over` maps a function over the columns of a Jacobian: on several cores where a fit has them to itself.
+    """
+
+    def __init__(self, data: Data, nominal: Model, over: Map = map) -> None:
         self.data = data
+        self.over = over
         self.nominal = nominal
         self._train = data.train
         self._validation = data.validation
@@ -118,7 +122,7 @@ class Estimator:
             return _forgiven(residual) if forgiving else residual
 
         steps = coordinates.steps if steps is None else steps
-        solution = minimise(cost, begin, lower, upper, steps, iterations, tolerance)
+        solution = minimise(cost, begin, lower, upper, steps, iterations, tolerance, self.over)
         return self._fitted(explanation, coordinates, solution)
 
     def at(self, explanation: Explanation, values: Mapping[str, float] | None = None) -> Fit:
@@ -157,7 +161,7 @@ class Estimator:
         def residual(point: Signal) -> Signal:
             return self.residual_at(fit.explanation, coordinates, point)
 
-        return jacobian(residual, fit.solution.point, fit.solution.residual, *coordinates.bounds, steps)
+        return jacobian(residual, fit.solution.point, fit.solution.residual, *coordinates.bounds, steps, self.over)
 
     def _fitted(self, explanation: Explanation, coordinates: Coordinates, solution: Solution) -> Fit:
         values = coordinates.values(solution.point)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import numpy as np
 from pierburg_ros.arrays import Flags, Signal
 
 Residual = Callable[[Signal], Signal]
+Map = Callable[..., Iterable[Signal]]
 
 REJECTED = 6
 """Steps that may fail to lower the cost before a descent ends: the damping has then grown by 1e10."""
@@ -43,17 +44,19 @@ def minimise(
     step: Signal,
     iterations: int = 25,
     tolerance: float = 1e-4,
+    over: Map = map,
 ) -> Solution:
     """Least squares of `residual` within bounds from `start`; finite differences of size `step`.
 
     Quantities whose bounds coincide stay where they are. Ends after so many `iterations`, or when one lowers the cost
     by less than `tolerance` of it, or nothing lowers it. The damping is Marquardt's: relative to the curvature of each
     quantity, divided by five after a step that lowers the cost, multiplied faster and faster while steps do not.
+    `over` maps a function over the columns of a Jacobian, on several cores or on one.
     """
     free = upper > lower
 
     def slope(point: Signal, value: Signal) -> Signal:
-        return jacobian(residual, point, value, lower, upper, step)
+        return jacobian(residual, point, value, lower, upper, step, over)
 
     point = np.clip(start, lower, upper)
     value = residual(point)
@@ -73,17 +76,22 @@ def minimise(
     return Solution(point, value, lambda: slope(point, value))
 
 
-def jacobian(residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal) -> Signal:
+def jacobian(
+    residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal, over: Map = map
+) -> Signal:
     """Derivative of `residual` at `point`, where it is `value`, by one-sided differences away from a bound."""
     if point.size == 0:
         return np.zeros((value.size, 0))
-    free = upper > lower
     signed = np.where(point + step <= upper, step, -step)
-    columns = [
-        (residual(point + signed[i] * unit) - value) / signed[i] if free[i] else np.zeros(value.size)
-        for i, unit in enumerate(np.eye(point.size))
-    ]
-    return np.asarray(np.nan_to_num(np.stack(columns, axis=1)))
+
+    def column(place: int) -> Signal:
+        if upper[place] <= lower[place]:
+            return np.zeros(value.size)
+        moved = point.copy()
+        moved[place] += signed[place]
+        return np.asarray((residual(moved) - value) / signed[place])
+
+    return np.asarray(np.nan_to_num(np.stack(list(over(column, range(point.size))), axis=1)))
 
 
 def _step(

@@ -83,16 +83,19 @@ FEWEST = 100
 """Samples without which a piece of a recording is left out: twice what tells where the shaft stands."""
 
 
-def runs_of(recording: Recording, model: Model, number: int = 0) -> tuple[list[Run], Pieces]:
-    """The pieces of `recording` with a known input, the `number`th of all, and how it was cut."""
-    found = pieces(from_standstill(recording, model), model)
-    runs = [run_of(part, model, number) for part in _from_standstills(found.parts) if part.time.size >= FEWEST]
-    if not runs:
+def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Pieces]:
+    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut.
+
+    One part where nothing is missing. InputError where none can be simulated.
+    """
+    cut = pieces(from_standstill(recording, model), model)
+    parts = [part for part in _from_standstills(cut.parts) if part.time.size >= FEWEST or len(cut.parts) == 1]
+    if not parts:
         raise InputError(
             f"{recording.name} has no stretch of {FEWEST} samples with a known duty that begins at a standstill"
             " (messages are missing). Record again with fewer processes beside."
         )
-    return runs, found
+    return parts, cut
 
 
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
@@ -155,11 +158,13 @@ def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> 
     return inputs.held_before() if angle > model.actuator.lower_stop else inputs
 
 
-def resimulated(model: Model, recording: Recording) -> Signal:
-    """What `model` would have measured over a `recording` from a standstill, in its unit, shape (samples,).
+def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
+    """The samples of `recording` that can be simulated, and what `model` would have measured, shape (samples,).
 
     InputError where it cannot be simulated.
     """
-    simulated = run_of(recording, model).simulated(model)
-    refuse_unsimulated(model, simulated, recording.time)
-    return simulated
+    parts, _ = parts_of(recording, Model.nominal(model.actuator))
+    simulated = np.concatenate([run_of(part, model).simulated(model) for part in parts])
+    time, measured = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "measured"))
+    refuse_unsimulated(model, simulated, time)
+    return replace(parts[0], time=time, measured=measured), simulated

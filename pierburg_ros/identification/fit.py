@@ -19,6 +19,7 @@ from pierburg_ros.estimation.refinement import COARSEST, refined
 from pierburg_ros.estimation.slopes import FINE
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
+from pierburg_ros.workers import workers
 
 GOOD = 1.1
 """A fit whose RMSE is below this multiple of the noise needs no second start."""
@@ -111,23 +112,31 @@ def fit(
     refine: bool = True,
     tolerance: float = 1e-7,
     seed: int = 0,
+    jobs: int | None = None,
 ) -> Identified:
     """Fit the parameters `free` (dotted names) of `model` to `recordings`; the others stay as they are.
 
     The first start is `model` itself; while the RMSE stays above the noise, up to `starts` are tried, the
     further ones chosen among random points. Where the cost is too rough for its slope and `refine` is true,
-    other local minima are searched from there.
+    other local minima are searched from there. `jobs` simulations run at a time, by default one for each core.
     """
     if not free:
         raise InputError("There is no free parameter to fit; expected one or more. Free one.")
-    estimator, explanation = Estimator(data_of(recordings, model), model), Explanation(tuple(free))
+    with workers(jobs) as pool:
+        estimator = Estimator(data_of(recordings, model), model, pool.map)
+        return _fitted(estimator, Explanation(tuple(free)), starts, refine, tolerance, seed)
+
+
+def _fitted(
+    estimator: Estimator, explanation: Explanation, starts: int, refine: bool, tolerance: float, seed: int
+) -> Identified:
     best = _descend(estimator, estimator.at(explanation), tolerance, refine)
     for start in _further_starts(estimator, explanation, starts - 1, seed):
         if best.ratio <= GOOD:
             break
         best = min(best, _descend(estimator, start, tolerance, refine), key=lambda fit: fit.chi2)
     known, slopes = covariance(estimator, best)
-    return Identified(estimator, best, known, slopes)
+    return Identified(Estimator(estimator.data, estimator.nominal), best, known, slopes)
 
 
 def _descend(estimator: Estimator, start: Fit, tolerance: float, refine: bool) -> Fit:

@@ -46,7 +46,7 @@ class Identification:
     noise: float
 
     def as_mapping(self) -> dict[str, Any]:
-        """The content of identification.json (section 5 of the contract)."""
+        """The content of identification.json (section 5 of docs/contract.md)."""
         return {
             "schema": 1,
             "parameters": {name: self._parameter(name) for name in self.findings},
@@ -83,13 +83,20 @@ class Identification:
 
 
 def identify(
-    model: Model, recordings: Sequence[Recording], free: Sequence[str] = (), fixed: Sequence[str] = ()
+    model: Model,
+    recordings: Sequence[Recording],
+    free: Sequence[str] = (),
+    fixed: Sequence[str] = (),
+    jobs: int | None = None,
 ) -> Identification:
-    """Identify the actuator of `model` from `recordings`; `free` and `fixed` change what is fitted."""
+    """Identify the actuator of `model` from `recordings`; `free` and `fixed` change what is fitted.
+
+    `jobs` is the number of simulations at a time, by default one for each core.
+    """
     for recording in recordings:
         refuse_unmoved(recording)
     names = free_names(model, free, fixed)
-    fitted = fit(model, recordings, names)
+    fitted = fit(model, recordings, names, jobs=jobs)
     spring = model.actuator.load == "spring"
     static = static_characteristic(recordings, model.actuator)
     supply = fitted.model.values["supply_voltage"]
@@ -100,7 +107,7 @@ def identify(
         fitted_lumps(fitted) if spring else None,
         static,
         step_response(recordings, model.actuator, static, supply) if spring else None,
-        validation_rmse(fitted.model, recordings, names),
+        validation_rmse(fitted.model, recordings, names, jobs),
         float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings]))),
     )
 
@@ -134,7 +141,9 @@ def refuse_unmoved(recording: Recording) -> None:
         )
 
 
-def validation_rmse(start: Model, recordings: Sequence[Recording], names: Sequence[str]) -> float:
+def validation_rmse(
+    start: Model, recordings: Sequence[Recording], names: Sequence[str], jobs: int | None = None
+) -> float:
     """RMSE on unseen data: of the last recording, or of the end of the only one, fitted to the rest."""
     if len(recordings) > 1:
         seen, unseen, first = recordings[:-1], recordings[-1], 0
@@ -142,8 +151,9 @@ def validation_rmse(start: Model, recordings: Sequence[Recording], names: Sequen
         unseen = recordings[0]
         end = unseen.time[0] + TRAINED_SHARE * unseen.duration
         seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
-    fitted = fit(start, seen, names, starts=1)
-    residual = (unseen.measured - resimulated(fitted.model, unseen))[first:]
+    fitted = fit(start, seen, names, starts=1, jobs=jobs)
+    kept, simulated = resimulated(fitted.model, unseen)
+    residual = (kept.measured - simulated)[first:]
     return float(np.sqrt(np.mean(residual**2)))
 
 

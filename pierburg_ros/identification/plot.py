@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 import plotly.graph_objects as go
@@ -55,8 +55,8 @@ def draw_static(figure: Figure, static: StaticCharacteristic, upper_stop: float,
     axes.legend(fontsize=8, loc="upper left")
 
 
-def write_static(path: Path, static: StaticCharacteristic, upper_stop: float) -> None:
-    """Write the static characteristic as a PNG."""
+def static_picture(static: StaticCharacteristic, upper_stop: float) -> Figure:
+    """The static characteristic as a Matplotlib figure."""
     figure = Figure(figsize=(7.0, 4.5), layout="constrained")
     FigureCanvasAgg(figure)
     title = (
@@ -64,11 +64,11 @@ def write_static(path: Path, static: StaticCharacteristic, upper_stop: float) ->
         f" {100 * static.preload_duty.value:.3f} %, scatter {np.degrees(static.scatter):.2g} degrees"
     )
     draw_static(figure, static, upper_stop, title)
-    figure.savefig(path, dpi=120)
+    return figure
 
 
-def write_page(path: Path, found: Identification, recordings: list[Recording]) -> None:
-    """Write measured and simulated, residual, static characteristic and correlations as one page."""
+def page(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
+    """Measured and simulated, residual, static characteristic and correlations, as a Plotly figure."""
     figure = make_subplots(
         rows=3,
         cols=2,
@@ -97,8 +97,7 @@ def write_page(path: Path, found: Identification, recordings: list[Recording]) -
     figure.update_yaxes(title_text=LABELS[recordings[0].quantity], row=1)
     figure.update_xaxes(title_text="time [s], recordings one after another", row=2)
     title = f"Identification of {found.model.actuator.name}"
-    figure.update_layout(template="plotly_white", height=1000, title=title)
-    figure.write_html(path, include_plotlyjs=True)
+    return figure.update_layout(template="plotly_white", height=1000, title=title)
 
 
 def _add_static(figure: go.Figure, found: Identification) -> None:

@@ -94,7 +94,7 @@ class PlantNode(LiveNode):
         return sample
 
     def publish(self, sample: Sample, with_clock: bool = False) -> None:
-        """The messages of one tick, in the order of the contract."""
+        """The messages of one tick, in the order of section 2 of docs/contract.md."""
         if with_clock:
             self._clock_publisher.publish(messages.clock(sample.time))
         self._hall_publisher.publish(messages.number(sample.hall_voltage))

@@ -1,4 +1,4 @@
-"""Quality of service of the topics in the contract."""
+"""Quality of service of the topics in section 2 of docs/contract.md."""
 
 from typing import Any
 

@@ -119,7 +119,7 @@ class Model:
         return content
 
     def write(self, path: str | Path) -> None:
-        """Write the model file (section 6 of the contract)."""
+        """Write the model file (section 6 of docs/contract.md)."""
         text = yaml.safe_dump(_plain(self.as_mapping()), sort_keys=False, default_flow_style=None)
         Path(path).write_text(text, encoding="utf-8")
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +16,7 @@ from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.sensor import measured, quantised
+from pierburg_ros.workers import workers
 
 LONG_BEFORE = 10.0
 """Time [s] after which neither a delayed duty nor a current is still on its way."""
@@ -114,16 +113,16 @@ def simulate_many(
     sample_times: ArrayLike,
     initial_angle: float = 0.0,
     initial_velocity: float = 0.0,
-    threads: int | None = None,
+    jobs: int | None = None,
 ) -> Signal:
-    """`simulate` for each of `models`, shape (sets, samples), over `threads` cores (all by default)."""
+    """`simulate` for each of `models`, shape (sets, samples), `jobs` of them at a time (default: one for each core)."""
     times = _increasing(sample_times)
     output = np.empty((len(models), times.size))
 
     def run(index: int) -> None:
         _run_into(output[index], models[index], inputs, times, initial_angle, initial_velocity)
 
-    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+    with workers(jobs) as pool:
         list(pool.map(run, range(len(models))))
     return output
 

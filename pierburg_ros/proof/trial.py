@@ -41,7 +41,7 @@ UNITS = {
 
 
 def unit(effect: str, parameter: str) -> str:
-    """Unit of an effect's parameter, as the contract writes it."""
+    """Unit of an effect's parameter, as section 7 of docs/contract.md writes it."""
     by_effect = UNITS.get(parameter, {})
     return by_effect.get(effect, by_effect.get("", "1"))
 

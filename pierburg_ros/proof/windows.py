@@ -8,7 +8,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 
-BLOCK = 0.2  # s, shortest window the contract allows
+BLOCK = 0.2  # s, shortest window that section 5 of docs/contract.md allows
 
 
 def held(time: Signal, signal: Signal, windows: Sequence[Mapping[str, float]]) -> tuple[float, float]:

@@ -1,11 +1,10 @@
-"""The example of a user's own actuator can be read and simulated; the effects' page is the declarations'."""
+"""The example of a user's own actuator can be read and simulated."""
 
 from pathlib import Path
 
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.effects.page import page
 from pierburg_ros.plant import Inputs, Model, simulate
 
 ROOT = Path(__file__).parents[2]
@@ -18,7 +17,3 @@ def test_the_example_reaches_its_open_stop_at_full_duty_and_returns_at_none() ->
     open_stop = 0.5 + 4.0 * 1.5 / (np.pi / 2)
     assert abs(hall[999] - open_stop) < 1e-9
     assert abs(hall[-1] - 0.5) < 1e-9
-
-
-def test_the_page_of_effects_is_written_from_the_declarations() -> None:
-    assert (ROOT / "docs/effects.md").read_text(encoding="utf-8") == page()

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from pierburg_ros.cli import app
-from pierburg_ros.cli.output import output_folder
 from pierburg_ros.cli.recordings import topics_of
 from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import output_folder
 
 
 def ending(arguments) -> int:

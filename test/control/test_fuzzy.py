@@ -43,6 +43,11 @@ def test_each_rule_alone_gives_the_centre_of_its_output_set(derivative, pi_outpu
     assert duty(SETTINGS, PEAK[pi_output], PEAK[derivative]) == pytest.approx(expected, abs=1e-15)
 
 
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_by_default_both_inputs_at_their_ends_ask_for_all_the_duty_there_is(direction):
+    assert duty(Settings(), direction, direction) == direction
+
+
 def test_inputs_beyond_the_support_count_as_its_end():
     assert duty(SETTINGS, 40.0, 0.0) == duty(SETTINGS, 1.0, 0.0)
     assert duty(SETTINGS, 0.3, -9.0) == duty(SETTINGS, 0.3, -1.0)

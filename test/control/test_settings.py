@@ -15,11 +15,6 @@ def test_every_setting_says_what_it_is_and_defaults_within_its_range():
         assert each.minimum <= each.default <= each.maximum
 
 
-def test_positive_big_reaches_full_duty():
-    assert Settings().positive_big == 1.0
-    assert Settings().negative_big == -1.0
-
-
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 101.0, "fast", True, None])
 def test_refuses_what_is_not_a_number_in_range(value):
     with pytest.raises(InputError, match=r"proportional_gain is .*; expected (0 to 100|a number)"):

@@ -36,7 +36,7 @@ CATALOGUE = {
     "sensor_hysteresis": {"width": "rad"},
     "sensor_quantization": {"step": "V"},
 }
-"""Section 7 of the interface contract: published ids keep their meaning."""
+"""Section 7 of docs/contract.md: published ids keep their meaning."""
 
 
 def test_published_effects_keep_their_names_and_units() -> None:

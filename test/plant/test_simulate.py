@@ -70,11 +70,11 @@ def test_a_run_taken_up_in_a_standstill_goes_on_as_the_whole_run(begin: float, v
     assert np.max(np.abs(taken_up - whole[late])) < 1e-4
 
 
-@pytest.mark.parametrize("threads", (1, 2, None))
-def test_many_are_the_single_runs(threads: int | None) -> None:
+@pytest.mark.parametrize("jobs", (1, 2, None))
+def test_many_are_the_single_runs(jobs: int | None) -> None:
     time, duty = rich_duty(3.0)
     models = [NOMINAL.with_values({"armature_resistance": r}) for r in np.linspace(4.0, 5.0, 9)]
-    together = simulate_many(models, Inputs(time, duty), time, threads=threads)
+    together = simulate_many(models, Inputs(time, duty), time, jobs=jobs)
     assert together.shape == (9, time.size)
     for model, row in zip(models, together, strict=True):
         assert np.array_equal(row, simulate(model, Inputs(time, duty), time))

@@ -19,7 +19,7 @@ def short(monkeypatch):
 
 
 def test_recordings_without_diagnosis(tmp_path, capsys, short):
-    arguments = ["--trials", "1", "--only", "consistent", "--generate-only", "--workers", "1"]
+    arguments = ["--trials", "1", "--only", "consistent", "--generate-only", "--jobs", "1"]
     with pytest.raises(SystemExit) as ending:
         main(["prove", "--output", str(tmp_path / "run"), *arguments])
     assert ending.value.code == 0

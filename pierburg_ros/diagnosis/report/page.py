@@ -108,12 +108,12 @@ def ties(alternatives: list[list[str]]) -> str:
     return "; or ".join(" with ".join(words(name) for name in tie) for tie in alternatives)
 
 
-def write_picture(path: Path, result: Result) -> None:
-    """Write signals, errors before and after, and duty as a PNG."""
+def picture(result: Result) -> Figure:
+    """Signals, errors before and after, and duty, as a Matplotlib figure."""
     diagnosis, signals = result.diagnosis, result.signals
-    picture = Figure(figsize=(10, 8), layout="constrained")
-    FigureCanvasAgg(picture)
-    above, before, after, duty = picture.subplots(4, sharex=True, height_ratios=[5, 3, 3, 2])
+    drawn = Figure(figsize=(10, 8), layout="constrained")
+    FigureCanvasAgg(drawn)
+    above, before, after, duty = drawn.subplots(4, sharex=True, height_ratios=[5, 3, 3, 2])
     for name, colour in COLOURS.items():
         _draw(above, signals, name, signals[name], colour)
         if name != "measured":
@@ -127,14 +127,14 @@ def write_picture(path: Path, result: Result) -> None:
         axes.grid(alpha=0.25)
         for place in diagnosis.locations:
             axes.axvspan(place.start, place.end, color=WINDOW, alpha=0.3, linewidth=0)
-    picture.suptitle(headline(diagnosis), fontsize=11)
+    drawn.suptitle(headline(diagnosis), fontsize=11)
     above.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8, frameon=False)
     above.set_ylabel(LABELS[diagnosis.quantity])
     before.set_ylabel(f"error before [{diagnosis.unit}]")
     after.set_ylabel(f"error after [{diagnosis.unit}]")
     duty.set_ylabel("duty")
     duty.set_xlabel("time [s]")
-    picture.savefig(path, dpi=110)
+    return drawn
 
 
 def _draw(axes: Axes, signals: dict[str, Any], name: str, values: Any, colour: str) -> None:

@@ -1,7 +1,7 @@
 """The paper's fit of steps from rest, equations (10) to (12), and the parameters that follow from it.
 
 Equation (11) is used with exp(-p t): with the printed exp(p t) nothing would decay while p1 p2 = omega_n^2
-and p1 + p2 = 2 xi omega_n hold, which need positive poles (section 1 of the interface contract).
+and p1 + p2 = 2 xi omega_n hold, which need positive poles (section 1 of docs/contract.md).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """One step of the mechanics, implicit in velocity: one body, or motor and massless shaft with a gear between.
 
 Torque balance of the single body: J (w - w0) / h = motor(w) - spring - loads - friction(w), solved for w;
-where the dry friction can hold the rest, w = 0 exactly. All inertia is the motor's (contract section 7).
+where the dry friction can hold the rest, w = 0 exactly. All inertia is the motor's (section 7 of docs/contract.md).
 """
 
 from __future__ import annotations

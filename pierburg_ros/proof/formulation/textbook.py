@@ -76,7 +76,7 @@ def simulate_textbook(
 ) -> NDArray[np.float64]:
     """Noise-free Hall voltage [V] at `sample_times` [s] (default `time`); `duty` [1] holds from each `time`.
 
-    `values` are flat dotted names of the contract; before the first (delayed) duty arrives, duty is 0.
+    `values` are flat dotted names of section 7 of docs/contract.md; before the first (delayed) duty arrives, duty is 0.
     `supply_voltage` [V] and `enabled` [0/1], where given, are held like duty; `longest_step` [s] is the usual one.
     """
     complete = textbook_values(values)

@@ -1,6 +1,6 @@
 """The numbers of the textbook formulation: Table I, the catalogue's parameters, and what lies outside it.
 
-Names and units are those of the contract (section 7); they are written out a second time on purpose.
+Names and units are those of section 7 of docs/contract.md; they are written out a second time on purpose.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NOMINAL: dict[str, float] = {
     "spring_preload": 0.29,  # N.m, Table I
     "coulomb_friction": 0.2007,  # N.m, Table I
     "total_inertia": 2.4602e-6,  # kg.m^2, Table I
-    "supply_voltage": 13.5,  # V, contract section 1
+    "supply_voltage": 13.5,  # V, section 1 of docs/contract.md
     "hall_voltage_closed": 0.42,  # V, paper
     "hall_voltage_open": 4.52,  # V, paper
 }
@@ -77,7 +77,7 @@ def textbook_values(values: Mapping[str, float]) -> dict[str, float]:
     complete.update({f"{effect}.{field}": 0.0 for effect, fields in EFFECTS.items() for field in fields})
     unknown = sorted(set(values) - set(complete))
     if unknown:
-        raise InputError(f"found value {unknown[0]!r}, expected names of the contract's sections 2 and 7.")
+        raise InputError(f"found value {unknown[0]!r}, expected names of section 2 or section 7 of docs/contract.md.")
     complete.update({name: float(value) for name, value in values.items()})
     if complete["external_load.end"] <= complete["external_load.start"]:
         complete["external_load.end"] = FOREVER

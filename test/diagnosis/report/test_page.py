@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.diagnosis.report.figures import BUCKETS, signal_figure, thinned, torque_figure
-from pierburg_ros.diagnosis.report.page import headline, write_page, write_picture
+from pierburg_ros.diagnosis.report.page import headline, picture, write_page
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -138,5 +138,5 @@ def test_headline_names_effects_and_drifts():
 
 
 def test_picture_is_a_png(tmp_path):
-    write_picture(tmp_path / "overview.png", result())
+    picture(result()).savefig(tmp_path / "overview.png", dpi=110)
     assert (tmp_path / "overview.png").read_bytes().startswith(b"\x89PNG")

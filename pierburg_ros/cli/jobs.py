@@ -1,0 +1,11 @@
+"""The option with which a command that computes in parallel is told how much at a time."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+JobsOption = Annotated[
+    int | None, typer.Option(min=1, show_default=False, help="Pieces of work at a time; default: one for each core.")
+]

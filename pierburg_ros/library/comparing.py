@@ -1,0 +1,140 @@
+"""A recording beside what a model would have measured."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.comparison import compare as comparison
+from pierburg_ros.library.model import Model, ModelLike, chosen_model
+from pierburg_ros.library.reading import Readable, read, taken_up
+from pierburg_ros.library.result import Result
+from pierburg_ros.library.tables import data_frame
+from pierburg_ros.library.topics import FLOAT64, topics_of
+from pierburg_ros.recording import Recording, write_recording
+
+if TYPE_CHECKING:
+    import pandas
+    import plotly.graph_objects as go
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Comparison(Result):
+    """A recording beside the answer of a model to its inputs; `found` has all the numbers."""
+
+    found: comparison.Comparison
+
+    @property
+    def recording(self) -> Recording:
+        """The recording, from where the shaft is first seen at rest."""
+        return self.found.recording
+
+    @property
+    def model(self) -> Model:
+        """The model that was simulated."""
+        return Model.of(self.found.model)
+
+    @property
+    def simulated(self) -> NDArray[np.float64]:
+        """What the model would have measured, in the recording's unit, shape (samples,)."""
+        return self.found.simulated
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """Measured minus simulated, in the recording's unit, shape (samples,)."""
+        return self.found.residual
+
+    @property
+    def rmse(self) -> float:
+        """Root of the mean squared residual, in the recording's unit."""
+        return self.found.rmse
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of the measurement's white part, in its unit: what no model can explain."""
+        return self.found.noise
+
+    @property
+    def title(self) -> str:
+        """Recording and actuator."""
+        return f"{self.recording.name} and {self.model.actuator.name}"
+
+    def to_json(self) -> str:
+        """The content of replay.json."""
+        return json.dumps(self.found.as_mapping(), indent=1, allow_nan=False) + "\n"
+
+    def figure(self) -> go.Figure:
+        """Measured and simulated, residual, and duty over time, as a Plotly figure."""
+        from pierburg_ros.comparison.plot import page
+
+        return page(self.found)
+
+    def picture(self) -> Figure:
+        """The same as a Matplotlib figure."""
+        from pierburg_ros.comparison.plot import picture
+
+        return picture(self.found)
+
+    def table(self) -> pandas.DataFrame:
+        """One row a sample, columns as in replay.csv: time [s], duty [1], measured, simulated, residual."""
+        return data_frame(self.columns())
+
+    def columns(self) -> dict[str, NDArray[np.float64]]:
+        """The columns of replay.csv, each of shape (samples,); the duty is the one in force."""
+        recording = self.recording
+        duty = recording.duty.at(recording.time, before=0.0)
+        return {
+            "time": recording.time,
+            "duty": duty,
+            "measured": recording.measured,
+            "simulated": self.simulated,
+            "residual": self.residual,
+        }
+
+    def rows(self) -> dict[str, str]:
+        """What was measured, what acts in the model, and how far both are apart."""
+        recording, worst, unit = self.recording, self.found.worst, self.recording.unit
+        explained = self.found.variance_explained
+        return {
+            "measured": f"{recording.quantity.replace('_', ' ')} in {unit}, {recording.time.size} samples"
+            f" over {recording.duration:.1f} s (times: {recording.time_source}){taken_up(recording)}",
+            "effects in the model": ", ".join(self.found.model.active_effects) or "none",
+            "RMSE": f"{self.rmse:.4g} {unit}",
+            "noise of the measurement": f"{self.noise:.2g} {unit}",
+            "variance explained": "nothing moved" if explained is None else f"{100 * explained:.3f} %",
+            "worst stretch": f"{worst.start:.2f} to {worst.end:.2f} s: RMSE {worst.rmse:.4g} {unit},"
+            f" {100 * worst.share:.0f} % of the residual's energy",
+        }
+
+    def write_into(self, folder: Path) -> None:
+        """Write replay.json, .csv, .mcap, .html and .png."""
+        (folder / "replay.json").write_text(self.to_json(), encoding="utf-8")
+        columns = self.columns()
+        table, header = np.column_stack(list(columns.values())), ",".join(columns)
+        np.savetxt(folder / "replay.csv", table, fmt="%.9g", delimiter=",", header=header, comments="")
+        simulated = {
+            f"/simulated_{self.recording.quantity}": (FLOAT64, self.recording.time, self.simulated),
+            "/residual": (FLOAT64, self.recording.time, self.residual),
+        }
+        write_recording(folder / "replay.mcap", {**topics_of(self.recording), **simulated})
+        self.figure().write_html(folder / "replay.html", include_plotlyjs=True)
+        self.picture().savefig(folder / "replay.png", dpi=120)
+
+
+def compare(recording: Readable, model: ModelLike) -> Comparison:
+    """`recording` beside what `model` would have measured under the same duty.
+
+    A recording or its path, a model or the path of its file. A recording that begins in motion is taken up where
+    the shaft is first at rest. InputError where it cannot be read or the model cannot be simulated.
+
+        comparison = pr.compare("bench.mcap", pr.Model.nominal("pierburg"))
+        print(comparison.rmse, comparison.noise)
+    """
+    measured = recording if isinstance(recording, Recording) else read(recording)
+    return Comparison(comparison.compare(chosen_model(model), measured))

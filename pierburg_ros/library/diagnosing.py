@@ -1,0 +1,135 @@
+"""What a simulation lacks, from recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pierburg_ros.diagnosis import diagnose as diagnosing
+from pierburg_ros.diagnosis.result import Result as Found
+from pierburg_ros.diagnosis.schema import BaseParameter, Estimate
+from pierburg_ros.diagnosis.schema import Diagnosis as Document
+from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_model
+from pierburg_ros.library.reading import Readable, recordings_of
+from pierburg_ros.library.result import Result
+from pierburg_ros.library.tables import data_frame
+
+if TYPE_CHECKING:
+    import pandas
+    import plotly.graph_objects as go
+    from matplotlib.figure import Figure
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Diagnosis(Result):
+    """The verdict on recordings; `document` has every field of diagnosis.json, `found` the signals as well."""
+
+    found: Found
+
+    @property
+    def document(self) -> Document:
+        """All that diagnosis.json says, field by field."""
+        return self.found.diagnosis
+
+    @property
+    def verdict(self) -> str:
+        """consistent, parameter_drift, missing_physics or unexplained."""
+        return self.document.verdict
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Ids of the effects that are named."""
+        return tuple(effect.id for effect in self.document.effects)
+
+    @property
+    def model(self) -> Model:
+        """The corrected model."""
+        return Model.of(self.found.model)
+
+    @property
+    def title(self) -> str:
+        """Recordings, verdict and names."""
+        from pierburg_ros.diagnosis.report.page import headline
+
+        return headline(self.document)
+
+    def to_json(self) -> str:
+        """The content of diagnosis.json."""
+        return self.document.text()
+
+    def figure(self) -> go.Figure:
+        """Signals, errors before and after, and duty of the first recording, as a Plotly figure."""
+        from pierburg_ros.diagnosis.report.figures import signal_figure
+
+        return signal_figure(self.document, self.found.signals)
+
+    def picture(self) -> Figure:
+        """The same as a Matplotlib figure."""
+        from pierburg_ros.diagnosis.report.page import picture
+
+        return picture(self.found)
+
+    def table(self) -> pandas.DataFrame:
+        """One row a quantity that the corrected model changes: value, unit, ends of the 95 % interval, nominal."""
+        rows: list[tuple[str, float | None, Estimate | BaseParameter]] = [
+            (f"{effect.id}.{name}", None, estimate)
+            for effect in self.document.effects
+            for name, estimate in effect.parameters.items()
+        ]
+        parameters = self.document.parameters.items()
+        rows += [(name, each.nominal, each) for name, each in parameters if each.drifted]
+        intervals = [estimate.ci95 or (None, None) for _, _, estimate in rows]
+        return data_frame(
+            {
+                "quantity": [name for name, _, _ in rows],
+                "nominal": [nominal for _, nominal, _ in rows],
+                "value": [estimate.value for _, _, estimate in rows],
+                "unit": [estimate.unit for _, _, estimate in rows],
+                "low": [low for low, _ in intervals],
+                "high": [high for _, high in intervals],
+                "identifiable": [estimate.identifiable for _, _, estimate in rows],
+            }
+        )
+
+    def rows(self) -> dict[str, str]:
+        """Verdict, summary, and what to record next."""
+        rows = {"verdict": self.verdict.replace("_", " "), "summary": self.document.summary}
+        if self.document.advice:
+            rows["next"] = self.document.advice[0]
+        return rows
+
+    def write_into(self, folder: Path) -> None:
+        """Write diagnosis.json, model.yaml, report.html and overview.png."""
+        from pierburg_ros.diagnosis.report.page import write_page
+
+        self.document.write(folder / "diagnosis.json")
+        self.model.write(folder / "model.yaml")
+        write_page(folder / "report.html", self.found)
+        self.picture().savefig(folder / "overview.png", dpi=110)
+
+
+def diagnose(
+    recordings: Readable | Sequence[Readable],
+    *,
+    actuator: ActuatorLike | None = None,
+    model: ModelLike | None = None,
+    progress: Progress | None = None,
+    jobs: int | None = None,
+) -> Diagnosis:
+    """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
+
+    Recordings of one actuator or their paths; compared with `model`, or with `actuator` as described (by default
+    the Pierburg valve). `progress` is told in words what is being tried. `jobs` is the number of fits at a time, by
+    default one for each core. Takes seconds to minutes. InputError where a recording cannot be used.
+
+        diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
+        print(diagnosis.verdict, diagnosis.effects)
+        diagnosis.save("results/diagnosis")
+    """
+    nominal = chosen_model(model, actuator if actuator or model else "pierburg")
+    measured = recordings_of(recordings)
+    return Diagnosis(diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs))

@@ -1,0 +1,40 @@
+"""Recordings from files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TypeAlias
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording import Recording, read_recording
+
+Readable: TypeAlias = Recording | str | Path
+"""A recording, or where one lies."""
+
+
+def read(path: str | Path, *, time: str | None = None, topics: Mapping[str, str] | None = None) -> Recording:
+    """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
+
+    A CSV has a header with `time` [s], `duty` [1, from -1 to 1] and `hall_voltage` [V] or `position` [rad].
+    `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock: stamp, clock, publish or
+    log. The result has `time` [s] and `measured` [V or rad], both of shape (samples,), and the channels that acted.
+    InputError says what is missing, and how to name it.
+
+        recording = pr.read("bench.csv", topics={"duty": "pwm"})
+    """
+    return read_recording(path, time=time, topics=topics)
+
+
+def recordings_of(given: Readable | Sequence[Readable]) -> list[Recording]:
+    """One or more recordings as a list, those given by path read; InputError where there is none."""
+    several = [given] if isinstance(given, (Recording, str, Path)) else list(given)
+    if not several:
+        raise InputError("There is no recording; expected one or more. Give recordings or their paths.")
+    return [each if isinstance(each, Recording) else read(each) for each in several]
+
+
+def taken_up(recording: Recording) -> str:
+    """What to add about a recording that begins in motion and is taken up later; nothing for others."""
+    begin = recording.time[0]
+    return f"; begins in motion, simulated from its first standstill at {begin:.2f} s" if begin > 0.0 else ""

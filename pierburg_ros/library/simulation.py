@@ -1,0 +1,241 @@
+"""Simulated measurements: an actuator driven by a duty, or by the controller."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.closed_loop import simulate_loop
+from pierburg_ros.closed_loop.open_loop import simulate_measurement
+from pierburg_ros.control import Schedule, Settings, read_duty_file, read_parameter_file, read_setpoint_file
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.library.model import Model, ModelLike, chosen_model
+from pierburg_ros.library.reading import read
+from pierburg_ros.library.result import Result
+from pierburg_ros.library.tables import data_frame
+from pierburg_ros.library.topics import topics_of
+from pierburg_ros.plant import Inputs
+from pierburg_ros.recording import Channel, Recording, write_recording
+
+if TYPE_CHECKING:
+    import pandas
+    import plotly.graph_objects as go
+    from matplotlib.figure import Figure
+
+FILE = "simulated.mcap"
+RATE = 500.0
+"""Samples a second [Hz] where neither an option nor the input says; the rate of the valve's control loop."""
+AFTER_LAST = 2.0
+"""How long the last row of a file holds unless a duration is given [s]: two time constants of the valve."""
+Signal: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = Sequence[float] | Signal
+Drive: TypeAlias = Recording | Values | str | Path
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """When and how the sensor is read, and where the shaft starts."""
+
+    duration: float | None = None
+    """[s]; None: as long as the input."""
+    rate: float | None = None
+    """[Hz]; None: 500, or as the input was sampled."""
+    noise: float = 0.0
+    """RMS, in the measured unit."""
+    seed: int = 0
+    initial_angle: float = 0.0
+    """[rad]"""
+
+    def times(self, last: float) -> Signal:
+        """Sample times [s], evenly spaced, by default until `last`."""
+        rate = self.rate or RATE
+        return np.arange(round((self.duration or last) * rate) + 1) / rate
+
+    def times_like(self, sampled: Signal) -> Signal:
+        """The times [s] at which something was `sampled`, unless a rate or a duration beyond its end is wanted."""
+        longer = self.duration is not None and self.duration > sampled[-1]
+        if self.rate is not None or longer:
+            return self.times(float(sampled[-1]))
+        return sampled[sampled <= (self.duration or sampled[-1])]
+
+
+@dataclass(frozen=True)
+class Simulation(Result):
+    """What the sensor of a simulated actuator gave, as a recording, and the model behind it."""
+
+    model: Model
+    recording: Recording
+
+    @property
+    def time(self) -> Signal:
+        """Sample times [s], shape (samples,)."""
+        return self.recording.time
+
+    @property
+    def measured(self) -> Signal:
+        """Hall voltage [V] or position [rad] at each time, shape (samples,)."""
+        return self.recording.measured
+
+    @property
+    def duty(self) -> Signal:
+        """Duty [1] in force at each time, shape (samples,)."""
+        return self.recording.duty.at(self.recording.time, before=0.0)
+
+    @property
+    def title(self) -> str:
+        """Actuator and effects."""
+        return " with ".join([self.model.actuator.name, *filter(None, [", ".join(self.model.active_effects)])])
+
+    def to_json(self) -> str:
+        """Every sample as JSON: time [s], duty [1], measured [V or rad]."""
+        columns = {name: values.tolist() for name, values in self.columns().items()}
+        about = {"schema": 1, "model": self.model.as_mapping(), "quantity": self.recording.quantity}
+        return json.dumps({**about, "unit": self.recording.unit, **columns}, allow_nan=False) + "\n"
+
+    def figure(self) -> go.Figure:
+        """Measured quantity and duty over time, as a Plotly figure."""
+        from pierburg_ros.library.signal_plot import figure
+
+        return figure(self.recording, self.title)
+
+    def picture(self) -> Figure:
+        """The same as a Matplotlib figure."""
+        from pierburg_ros.library.signal_plot import picture
+
+        return picture(self.recording, self.title)
+
+    def columns(self) -> dict[str, Signal]:
+        """Time [s], duty in force [1] and measured [V or rad], each of shape (samples,)."""
+        return {"time": self.time, "duty": self.duty, self.recording.quantity: self.measured}
+
+    def table(self) -> pandas.DataFrame:
+        """One row a sample: time [s], duty in force [1], hall_voltage [V] or position [rad]."""
+        return data_frame(self.columns())
+
+    def rows(self) -> dict[str, str]:
+        """Length, rate and range."""
+        low, high = float(self.measured.min()), float(self.measured.max())
+        return {
+            "simulated": f"{self.recording.duration:.2f} s, {self.time.size} samples",
+            self.recording.quantity.replace("_", " "): f"{low:.4g} to {high:.4g} {self.recording.unit}",
+        }
+
+    def write_into(self, folder: Path) -> None:
+        """Write simulated.mcap."""
+        write_recording(folder / FILE, topics_of(self.recording))
+
+
+def simulate(
+    model: ModelLike,
+    *,
+    duty: Drive | None = None,
+    setpoints: Values | str | Path | None = None,
+    time: Values | None = None,
+    controller: Settings | str | Path | None = None,
+    duration: float | None = None,
+    rate: float | None = None,
+    noise: float = 0.0,
+    seed: int = 0,
+    initial_angle: float = 0.0,
+) -> Simulation:
+    """The actuator of `model` under a duty (open loop) or under the controller (closed loop).
+
+    `duty` [1, from -1 to 1] or `setpoints` [rad] are values of shape (changes,) that each hold from their `time` [s]
+    until the next one; or a file, a CSV with the header `time,duty` or `time,setpoint`; or, for the duty, a
+    recording or its path. `controller`: settings, or their parameter file. `duration` [s] and `rate` [Hz] of the
+    samples; by default those of the input, or 500 Hz. `noise` is its RMS in the measured unit, drawn by `seed`;
+    `initial_angle` [rad]. InputError where the input or the model cannot be used.
+
+        time = np.arange(0.0, 3.0, 0.002)
+        simulation = pr.simulate(pr.Model.nominal(), duty=np.where(time < 0.5, 0.0, 0.24), time=time)
+    """
+    if (duty is None) == (setpoints is None):
+        raise InputError("Expected either a duty (open loop) or setpoints (closed loop). Give one of them.")
+    if duty is not None and controller is not None:
+        raise InputError("Found a controller with a duty, which runs without one. Leave the controller out.")
+    chosen = chosen_model(model)
+    sampling = Sampling(duration, rate, noise, seed, initial_angle)
+    if duty is not None:
+        return Simulation(chosen, open_loop(chosen, duty, time, sampling))
+    assert setpoints is not None
+    settings = controller if isinstance(controller, Settings) else Settings()
+    if isinstance(controller, (str, Path)):
+        settings = read_parameter_file(controller)
+    return Simulation(chosen, closed_loop(chosen, settings, scheduled(setpoints, time), sampling))
+
+
+def closed_loop(model: Model, settings: Settings, setpoints: Schedule, sampling: Sampling) -> Recording:
+    """A run under the controller."""
+    duration = sampling.duration or float(setpoints.time[-1]) + AFTER_LAST
+    rate = sampling.rate or RATE
+    run = simulate_loop(
+        model, settings, setpoints, duration, rate, sampling.noise, sampling.seed, sampling.initial_angle
+    )
+    wanted = until(Channel(setpoints.time, setpoints.values), run.time[-1])
+    return Recording(FILE, "hall_voltage", run.time, run.hall_voltage, Channel(run.time, run.duty), setpoints=wanted)
+
+
+def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling) -> Recording:
+    """A run under a duty: one written down, or one recorded."""
+    supply: Channel | None = None
+    enabled: Channel | None = None
+    if isinstance(duty, (str, Path)) and is_duty_file(Path(duty)):
+        schedule = read_duty_file(duty)
+        inputs, channel = Inputs(schedule.time, schedule.values), Channel(schedule.time, schedule.values)
+        times = sampling.times(float(schedule.time[-1]) + AFTER_LAST)
+    elif isinstance(duty, (str, Path, Recording)):
+        recorded = duty if isinstance(duty, Recording) else read(duty)
+        inputs, channel = inputs_of(recorded), recorded.duty
+        supply, enabled = recorded.supply_voltage, recorded.enabled
+        times = sampling.times_like(recorded.time)
+    else:
+        when = changes(time)
+        inputs = Inputs(when, np.asarray(duty, dtype=float))
+        channel = Channel(inputs.time, inputs.duty)
+        times = sampling.times_like(when)
+    measured = simulate_measurement(model, inputs, times, sampling.noise, sampling.seed, sampling.initial_angle)
+    last = float(times[-1])
+    supply, enabled = (each and until(each, last) for each in (supply, enabled))
+    return Recording(FILE, model.actuator.quantity, times, measured, until(channel, last), supply, enabled=enabled)
+
+
+def scheduled(setpoints: Values | str | Path, time: Values | None) -> Schedule:
+    """Setpoints [rad] from a file, or the values given with their times."""
+    if isinstance(setpoints, (str, Path)):
+        return read_setpoint_file(setpoints)
+    when, values = changes(time), np.asarray(setpoints, dtype=float)
+    if when.shape != values.shape:
+        raise InputError(f"Found {when.size} times and {values.size} setpoints, expected one time for each.")
+    return Schedule(when, values)
+
+
+def changes(time: Values | None) -> Signal:
+    """Times [s] of values, rising; InputError where there are none."""
+    if time is None:
+        raise InputError("Found values without their times, expected one time [s] for each. Give time too.")
+    when = np.asarray(time, dtype=float)
+    if when.ndim != 1 or when.size < 2 or not np.all(np.diff(when) > 0):
+        raise InputError(f"Found times of shape {when.shape}, expected two or more, each after the one before.")
+    return when
+
+
+def until(channel: Channel, last: float) -> Channel:
+    """What acts up to the time `last` [s]."""
+    within = channel.time <= last + 1e-9  # times of samples are rounded
+    return Channel(channel.time[within], channel.values[within])
+
+
+def is_duty_file(path: Path) -> bool:
+    """Whether `path` is a CSV of time and duty alone, not of a recording."""
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return False
+    with path.open(encoding="utf-8", errors="replace") as file:
+        header = file.readline()
+    return not any(measured in header for measured in ("hall_voltage", "position"))

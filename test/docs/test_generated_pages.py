@@ -1,0 +1,41 @@
+"""Pages that are written by the code say what the code says today."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pierburg_ros.effects.page import page
+
+DOCS = Path(__file__).parents[2] / "docs"
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+def test_the_page_of_effects_is_written_from_the_declarations():
+    assert (DOCS / "effects.md").read_text(encoding="utf-8") == page(), "run python -m pierburg_ros.effects.page"
+
+
+@pytest.fixture(scope="module")
+def paper(tmp_path_factory):
+    """The folder of the paper's figures, drawn anew."""
+    folder = tmp_path_factory.mktemp("docs") / "paper"
+    shutil.copytree(DOCS / "paper", folder, ignore=shutil.ignore_patterns("*.png", "README.md", "__pycache__"))
+    subprocess.run([sys.executable, folder / "figures.py"], check=True)
+    return folder
+
+
+def test_the_page_of_the_paper_says_what_the_simulator_gives_today(paper):
+    """Its words to the letter, its numbers to a part in a hundred: another processor rounds otherwise."""
+    kept, written = ((folder / "README.md").read_text(encoding="utf-8") for folder in (DOCS / "paper", paper))
+    assert NUMBER.split(kept) == NUMBER.split(written), "run python docs/paper/figures.py"
+    numbers = [[float(number) for number in NUMBER.findall(text)] for text in (kept, written)]
+    assert numbers[0] == pytest.approx(numbers[1], rel=0.01, abs=0.011), "run python docs/paper/figures.py"
+
+
+def test_every_figure_of_the_page_is_drawn_and_kept(paper):
+    named = set(re.findall(r"\((figure_\d+\.png)\)", (paper / "README.md").read_text(encoding="utf-8")))
+    for folder in (DOCS / "paper", paper):
+        assert {path.name for path in folder.glob("*.png")} == named

@@ -1,0 +1,85 @@
+"""`import pierburg_ros as pr`: what it offers, and that it costs and touches nothing."""
+
+import ast
+import inspect
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import pierburg_ros as pr
+
+SOURCE = Path(pr.__file__)
+IMPORT = """
+import json, sys, time
+watched = ("open", "os.", "shutil.", "subprocess.Popen", "tempfile.")
+seen = []
+def audit(name, arguments):
+    if name.startswith(watched) and not name.startswith(("os.listdir", "os.scandir", "os.putenv")):
+        seen.append([name, *map(str, arguments)])
+sys.addaudithook(audit)
+began = time.perf_counter()
+import pierburg_ros
+took = time.perf_counter() - began
+loaded = [name for name in ("numba", "numpy", "scipy", "plotly", "matplotlib") if name in sys.modules]
+print(json.dumps({"seen": seen, "loaded": loaded, "took": took}))
+"""
+FUNCTIONS = ("read", "simulate", "compare", "identify", "diagnose")
+
+
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory):
+    """What a fresh process does while it imports the package."""
+    home = tmp_path_factory.mktemp("home")
+    environment = {**os.environ, "XDG_CACHE_HOME": str(home), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run([sys.executable, "-c", IMPORT], env=environment, capture_output=True, text=True, check=True)
+    assert not done.stderr and not any(home.iterdir())
+    return json.loads(done.stdout)
+
+
+def test_importing_it_opens_its_own_source_alone(imported, record_property):
+    record_property("import time [s]", imported["took"])
+    opened = {Path(arguments[0]).name for name, *arguments in imported["seen"] if name == "open"}
+    assert {name.split(".")[0] for name in opened} <= {"__init__"}
+    assert {name for name, *_ in imported["seen"]} <= {"open"}
+
+
+def test_importing_it_loads_no_library(imported):
+    assert imported["loaded"] == []
+
+
+def test_everything_it_names_is_there_and_listed():
+    assert set(pr.__all__) <= set(dir(pr))
+    for name in pr.__all__:
+        assert getattr(pr, name).__doc__
+
+
+def test_what_it_names_and_what_type_checkers_see_are_the_same():
+    block = next(node for node in ast.parse(SOURCE.read_text()).body if isinstance(node, ast.If))
+    seen = {alias.name: node.module for node in block.body for alias in node.names}
+    assert {name: f"pierburg_ros.{home}" for name, home in pr._HOME.items()} == seen
+    assert sorted(seen) == pr.__all__
+
+
+def test_a_name_that_does_not_exist_is_an_ordinary_attribute_error():
+    with pytest.raises(AttributeError, match=r"module 'pierburg_ros' has no attribute 'analyse'"):
+        _ = pr.analyse
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_function_is_typed_and_documents_each_argument_and_an_example(name):
+    function = getattr(pr, name)
+    signature = inspect.signature(function)
+    assert all(parameter.annotation is not inspect.Parameter.empty for parameter in signature.parameters.values())
+    assert signature.return_annotation is not inspect.Signature.empty
+    text = inspect.getdoc(function)
+    assert not [parameter for parameter in signature.parameters if parameter not in text]
+    assert "InputError" in text and f"pr.{name}(" in text
+
+
+def test_the_module_is_the_command():
+    done = subprocess.run([sys.executable, "-m", "pierburg_ros", "--help"], capture_output=True, text=True, check=True)
+    assert "Usage: pierburg" in done.stdout

@@ -1,0 +1,95 @@
+"""Results: as JSON, on disk, drawn, in tables, in a notebook."""
+
+import json
+import sys
+from html.parser import HTMLParser
+
+import matplotlib.figure
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+import pierburg_ros as pr
+from pierburg_ros.cli.app import main
+from pierburg_ros.library.result import Result
+
+RESULTS = ("simulation", "comparison", "identification")
+
+
+@pytest.fixture(params=RESULTS)
+def result(request) -> Result:
+    return request.getfixturevalue(request.param)
+
+
+def test_json_has_no_number_that_json_does_not_know(result):
+    assert json.loads(result.to_json(), parse_constant=pytest.fail)["schema"] == 1
+
+
+def test_figures_are_objects_of_both_libraries(result):
+    assert isinstance(result.figure(), go.Figure) and result.figure().data
+    assert isinstance(result.picture(), matplotlib.figure.Figure) and result.picture().axes
+
+
+def test_a_notebook_shows_the_numbers_and_the_picture(result):
+    seen = []
+    parser = HTMLParser()
+    parser.handle_data = seen.append
+    parser.handle_starttag = lambda tag, attributes: seen.append(tag)
+    parser.feed(result._repr_html_())
+    assert set(result.rows()) <= set(seen) and "img" in seen
+
+
+def test_a_table_is_a_data_frame(simulation, comparison, identification):
+    np.testing.assert_array_equal(simulation.table()["hall_voltage"], simulation.measured)
+    assert list(comparison.table()) == ["time", "duty", "measured", "simulated", "residual"]
+    table = identification.table().set_index("parameter")
+    assert table.loc["armature_resistance", "low"] < 4.7 < table.loc["armature_resistance", "high"]
+    assert table.loc["total_inertia", "fixed"]
+
+
+def test_without_pandas_a_table_says_what_to_install(comparison, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match=r"needs pandas.*pip install 'pierburg_ros\[tables\]'"):
+        comparison.table()
+
+
+def test_saving_writes_all_files_or_none(comparison, tmp_path, monkeypatch):
+    def fails(self, folder):
+        (folder / "half.json").write_text("{")
+        raise OSError("no space left")
+
+    output = tmp_path / "made" / "here"
+    comparison.save(output)
+    assert json.loads((output / "replay.json").read_text())["rmse"] == pytest.approx(comparison.rmse)
+    monkeypatch.setattr(pr.Comparison, "write_into", fails)
+    with pytest.raises(OSError, match="no space left"):
+        comparison.save(tmp_path / "other")
+    assert [path.name for path in tmp_path.iterdir()] == ["made"]
+
+
+@pytest.fixture
+def saved(simulation, stiff, tmp_path):
+    """The recording and the model on disk."""
+    simulation.save(tmp_path)
+    stiff.write(tmp_path / "model.yaml")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("command", "result"),
+    [
+        (["replay", "--actuator", "pierburg"], lambda path: pr.compare(path, pr.Model.nominal())),
+        (["identify", "--jobs", "1"], lambda path: pr.identify(path, jobs=1)),
+    ],
+    ids=["replay", "identify"],
+)
+def test_the_command_writes_the_files_that_the_library_saves(saved, command, result):
+    recording = saved / "simulated.mcap"
+    with pytest.raises(SystemExit) as ended:
+        main([*command, str(recording), "--output", str(saved / "command")])
+    assert ended.value.code == 0
+    result(recording).save(saved / "library")
+    names = {path.name for path in (saved / "library").iterdir()}
+    assert names == {path.name for path in (saved / "command").iterdir()}
+    for name in (name for name in names if name.endswith((".json", ".csv", ".mcap", ".yaml"))):
+        assert (saved / "library" / name).read_bytes() == (saved / "command" / name).read_bytes(), name

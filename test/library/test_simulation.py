@@ -1,0 +1,73 @@
+"""`pr.simulate` and `pr.Model`: arrays, files and recordings in, a recording out."""
+
+import numpy as np
+import pytest
+
+import pierburg_ros as pr
+from pierburg_ros.plant import Inputs, simulate
+
+
+def test_arrays_drive_the_plant_and_are_sampled_where_they_change(stiff):
+    time = np.array([0.0, 0.5, 0.75, 2.0])
+    made = pr.simulate(stiff, duty=[0.0, 0.24, 0.3, 0.0], time=time)
+    expected = simulate(stiff, Inputs(time, np.array([0.0, 0.24, 0.3, 0.0])), time)
+    np.testing.assert_allclose(made.measured, expected, atol=1e-12)
+    np.testing.assert_array_equal(made.duty, [0.0, 0.24, 0.3, 0.0])
+
+
+def test_a_rate_and_a_duration_choose_the_samples(stiff):
+    made = pr.simulate(stiff, duty=[0.0, 0.24], time=[0.0, 0.5], rate=100.0, duration=3.0)
+    np.testing.assert_allclose(made.time, np.arange(301) / 100.0)
+
+
+def test_a_recording_drives_the_plant_again(simulation, stiff):
+    again = pr.simulate(stiff, duty=simulation.recording)
+    assert np.std(simulation.measured - again.measured) == pytest.approx(0.003, rel=0.1)
+
+
+def test_a_saved_simulation_reads_as_it_was(simulation, tmp_path):
+    simulation.save(tmp_path)
+    recording = pr.read(tmp_path / "simulated.mcap")
+    np.testing.assert_array_equal(recording.measured, simulation.measured)
+    np.testing.assert_allclose(recording.time, simulation.time, atol=1e-9)
+    np.testing.assert_array_equal(recording.duty.at(recording.time), simulation.duty)
+
+
+def test_the_controller_brings_the_shaft_to_its_setpoints():
+    made = pr.simulate(pr.Model.nominal(), setpoints=[0.0, 0.8], time=[0.0, 0.5])
+    assert made.measured[-1] == pytest.approx(0.42 + 4.1 * 0.8 / (np.pi / 2), abs=0.02)
+    np.testing.assert_array_equal(made.recording.setpoints.values, [0.0, 0.8])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ({}, "Expected either a duty"),
+        ({"duty": [0.1, 0.2]}, "values without their times"),
+        ({"duty": [0.1, 0.2], "time": [1.0, 0.5]}, "each after the one before"),
+        ({"duty": [0.1], "time": [0.0, 0.5]}, "2 times and 1 values of duty"),
+        ({"setpoints": [0.1], "time": [0.0, 0.5]}, "2 times and 1 setpoints"),
+        ({"duty": [10.0, 20.0], "time": [0.0, 0.5]}, "Divide percentages by 100"),
+        ({"duty": [0.1, 0.2], "time": [0.0, 0.5], "controller": "c.yaml"}, "Found a controller with a duty"),
+    ],
+)
+def test_what_cannot_be_simulated_is_refused_with_the_reason(arguments, reason):
+    with pytest.raises(pr.InputError, match=reason):
+        pr.simulate(pr.Model.nominal(), **arguments)
+
+
+def test_a_model_is_read_as_it_was_written_and_stays_one_of_the_librarys(stiff, tmp_path):
+    stiff.write(tmp_path / "model.yaml")
+    read = pr.Model.read(tmp_path / "model.yaml")
+    assert read == stiff and isinstance(read.with_values({"gear_ratio": 37.3}), pr.Model)
+    assert pr.compare(pr.simulate(read, duty=[0.0, 0.24], time=[0.0, 1.0], rate=500.0).recording, read).rmse < 1e-9
+
+
+def test_a_model_can_be_named_by_the_path_of_its_file(stiff, simulation, tmp_path):
+    stiff.write(tmp_path / "model.yaml")
+    assert pr.compare(simulation.recording, tmp_path / "model.yaml").rmse == pytest.approx(0.003, rel=0.1)
+
+
+def test_a_missing_recording_is_refused():
+    with pytest.raises(pr.InputError, match="There is no recording"):
+        pr.identify([])
