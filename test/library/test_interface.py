@@ -42,8 +42,10 @@ def imported(tmp_path_factory):
 
 def test_importing_it_opens_its_own_source_alone(imported, record_property):
     record_property("import time [s]", imported["took"])
-    opened = {Path(arguments[0]).name for name, *arguments in imported["seen"] if name == "open"}
-    assert {name.split(".")[0] for name in opened} <= {"__init__"}
+    opened = [(Path(arguments[0]), arguments[1]) for name, *arguments in imported["seen"] if name == "open"]
+    assert {path.name.split(".")[0] for path, _ in opened if path.is_relative_to(SOURCE.parent)} == {"__init__"}
+    assert {path.suffix for path, _ in opened} <= {".py", ".pyc"}
+    assert {mode for _, mode in opened} <= {"r", "rb", "None"}
     assert {name for name, *_ in imported["seen"]} <= {"open"}
 
 
