@@ -22,6 +22,8 @@ RUN = """
 import numpy as np, sys
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate
+
+pytestmark = pytest.mark.search
 model = Model.nominal(read_actuator("pierburg")).with_values({"coulomb_friction": 0.0})
 if sys.argv[1] != "0":
     model = model.with_values({"air_flow.coefficient": float(sys.argv[1])})

@@ -9,6 +9,8 @@ from pierburg_ros.diagnosis.search.explore import FADING, Exploration
 from pierburg_ros.diagnosis.search.fits import Search
 from pierburg_ros.diagnosis.search.refinement import polished
 
+pytestmark = pytest.mark.search
+
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 

@@ -11,6 +11,8 @@ from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search.fits import Search
 from pierburg_ros.diagnosis.search.ripples import RIPPLES, through_stretches
 
+pytestmark = pytest.mark.search
+
 OVER_ANGLE, IN_TIME = RIPPLES
 SUPPLY = Explanation(("supply_voltage",))
 COGGED = {

@@ -12,6 +12,8 @@ from pierburg_ros.diagnosis.search.explore import FINISHED, Exploration
 from pierburg_ros.diagnosis.search.fits import Search
 from pierburg_ros.diagnosis.search.screening import Outlook, Prospect, most_promising
 
+pytestmark = pytest.mark.search
+
 LAG = Variant("sensor_lag", ("time_constant",))
 
 

@@ -16,6 +16,8 @@ from pierburg_ros.estimation.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
 from pierburg_ros.recording import Channel, Recording
 
+pytestmark = pytest.mark.search
+
 DEAD = {"pwm_deadband.width": 0.02}
 
 

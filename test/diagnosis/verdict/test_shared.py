@@ -9,6 +9,8 @@ from pierburg_ros.diagnosis.search.explanation import Explanation
 from pierburg_ros.diagnosis.search.explore import Exploration
 from pierburg_ros.diagnosis.verdict.shared import Shared, select
 
+pytestmark = pytest.mark.search
+
 TRUTH = {"viscous_friction.coefficient": 0.03, "sensor_lag.time_constant": 0.01}
 
 
