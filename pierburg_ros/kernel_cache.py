@@ -12,6 +12,7 @@ import logging
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Callable
 from functools import cache, cached_property
 from pathlib import Path
@@ -22,7 +23,9 @@ from numba.core import caching
 
 PACKAGE = Path(__file__).parent
 KEPT = 6
-"""Cache folders kept besides the one in use, those of other versions that ran last; one takes up to 40 MB."""
+"""Cache folders kept besides the one in use, those of other versions that ran last; one takes up to 30 MB."""
+IN_USE = 24.0 * 3600.0
+"""Time [s] since its last use for which a folder is never removed: several versions may run side by side all day."""
 LOG = logging.getLogger(__name__)
 
 
@@ -58,11 +61,12 @@ def opened(folder: Path) -> Path:
 
 
 def prune(folder: Path) -> None:
-    """Remove what older versions have left beside `folder`, but for the `KEPT` that ran last."""
-    others = [other for other in folder.parent.iterdir() if other.is_dir() and other != folder]
-    others.sort(key=lambda other: other.stat().st_mtime, reverse=True)
-    for old in others[KEPT:]:
-        shutil.rmtree(old, ignore_errors=True)
+    """Remove what older versions have left beside `folder`, but for the `KEPT` that ran last and any `IN_USE`."""
+    used = {other: other.stat().st_mtime for other in folder.parent.iterdir() if other.is_dir() and other != folder}
+    latest = sorted(used, key=lambda other: used[other], reverse=True)
+    for old in latest[KEPT:]:
+        if used[old] < time.time() - IN_USE:
+            shutil.rmtree(old, ignore_errors=True)
 
 
 @cache

@@ -15,6 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.search
+
 ROOT = Path(__file__).parent.parent
 PACKAGE = "pierburg_ros"
 PRELOAD, STIFFNESS, BRAKING = 0.29, 0.1419, (37.3 * 0.022) ** 2 / 4.139  # Table I
@@ -41,10 +43,11 @@ import json
 import numpy as np
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
-from pierburg_ros.diagnosis.evidence.data import evidence_of
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.explanation import Explanation
-from pierburg_ros.diagnosis.search.fits import Search
+from pierburg_ros.diagnosis.search.linear import promised
+from pierburg_ros.estimation.data import data_of
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording.recording import Channel, Recording
 random = np.random.default_rng(1)
@@ -54,12 +57,12 @@ inputs = Inputs(np.arange(60) * 0.2, np.concatenate([[0.0], random.uniform(-0.1,
 time = np.arange(6000) / 500.0
 measured = simulate_measurement(nominal.with_values({"output_filter.time_constant": 0.02}), inputs, time, 0.003)
 channel = Channel(inputs.time, inputs.duty)
-search = Search(evidence_of([Recording("run", "hall_voltage", time, measured, channel)], actuator), nominal)
-starts = starts_of(search.data, nominal)
+estimator = Estimator(data_of([Recording("run", "hall_voltage", time, measured, channel)], nominal), nominal)
+starts = starts_of(estimator.data, nominal)
 (variant,) = [each for each in starts if each.effect == "output_filter"]
-base = search.fit(Explanation())
-_, start = search.screened(base, variant, starts[variant])[0]
-found = search.fit(Explanation((), (variant,)), start)
+base = estimator.fit(Explanation())
+_, start = promised(estimator, base, variant, starts[variant])[0]
+found = estimator.fit(Explanation((), (variant,)), start)
 print(json.dumps([found.values["output_filter.time_constant"], base.ratio, found.ratio]))
 """
 

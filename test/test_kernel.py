@@ -73,6 +73,12 @@ def test_a_new_cache_folder_takes_the_place_of_the_oldest(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"new", *(f"old-{age}" for age in range(KEPT))}
 
 
+def test_folders_of_versions_that_run_side_by_side_all_stay(tmp_path):
+    for version in range(3 * KEPT):
+        opened(tmp_path / f"version-{version}")
+    assert len(list(tmp_path.iterdir())) == 3 * KEPT
+
+
 def test_a_folder_in_use_counts_as_new(tmp_path):
     used = tmp_path / "used"
     used.mkdir()

@@ -13,6 +13,8 @@ from pierburg_ros.cli.app import main
 from pierburg_ros.plant import Inputs, Model, read_model, simulate
 from pierburg_ros.recording import write_simulated
 
+pytestmark = pytest.mark.search
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 

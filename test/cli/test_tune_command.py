@@ -5,6 +5,8 @@ import pytest
 from pierburg_ros.cli.app import main
 from pierburg_ros.control import read_parameter_file
 
+pytestmark = pytest.mark.search
+
 QUICK = ("--generations", "0", "--members", "4")
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from pierburg_ros.closed_loop.course import STEPS, Course
 from pierburg_ros.closed_loop.designs import DESIGNS
-from pierburg_ros.closed_loop.goal import Goal, settling_bounds
+from pierburg_ros.closed_loop.goal import Goal
 from pierburg_ros.closed_loop.judgement import judge
 from pierburg_ros.closed_loop.plants import HOT, NOMINAL, STICKY, plant_set
 from pierburg_ros.closed_loop.report import BEGIN, END, insert, report
@@ -31,13 +31,14 @@ def test_shortfall_is_the_logarithm_of_the_excess():
     )
 
 
-def test_goals_are_those_stated():
-    bounds = settling_bounds(FEW[NOMINAL], 500.0)
-    nominal = Goal().nominal_limits(bounds)
-    np.testing.assert_allclose(nominal[:, 0], 2.0 * bounds)
-    assert nominal[0, 1:] == pytest.approx([0.02, math.radians(0.3), math.radians(0.15)])
-    other = Goal().other_limits(np.full(len(STEPS), 0.1))
-    assert other[0] == pytest.approx([0.125, 0.02, math.radians(0.6), math.radians(0.15)])
+def test_limits_follow_from_the_goal_and_are_wider_for_other_plants():
+    bounds = np.linspace(0.1, 0.3, len(STEPS))
+    goal = Goal(settling=3.0, overshoot=0.05, steady_state_error=0.01, hunting=0.004, longer=1.5, wider=2.5)
+    nominal = goal.nominal_limits(bounds)
+    np.testing.assert_allclose(nominal[:, 0], 3.0 * bounds)
+    assert nominal[0, 1:] == pytest.approx([0.05, 0.01, 0.004])
+    other = goal.other_limits(np.full(len(STEPS), 0.1))
+    assert other[0] == pytest.approx([0.15, 0.05, 0.025, 0.004])
 
 
 def test_a_worse_controller_costs_more_and_counting_may_stop():
@@ -48,6 +49,7 @@ def test_a_worse_controller_costs_more_and_counting_may_stop():
     assert task.cost(slow, course, at_most=0.01) > 0.01
 
 
+@pytest.mark.search
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_short_search_is_repeatable_and_stays_within_its_bounds(name):
     design = DESIGNS[name]
@@ -63,6 +65,7 @@ def judgement():
     return judge(DESIGNS["PIFLC"], Settings(), {name: FEW[name] for name in STATED})
 
 
+@pytest.mark.search
 @pytest.mark.parametrize("plant", [NOMINAL, HOT, STICKY])
 def test_the_default_settings_reach_the_stated_goals(judgement, plant):
     """Median of ten seeds at 3 mV, one sample of delay, on the true angle, from both sides."""
@@ -70,6 +73,7 @@ def test_the_default_settings_reach_the_stated_goals(judgement, plant):
     assert shares.max() <= 1.0, [STEPS[step].label for step in np.flatnonzero(shares.max(axis=1) > 1.0)]
 
 
+@pytest.mark.search
 def test_the_report_replaces_what_stood_between_its_markers(judgement):
     comparison = report(Goal(), [judgement])
     for title in ("Settings found", "Goals", "Every plant", "Steps on the plant: nominal"):

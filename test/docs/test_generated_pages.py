@@ -11,7 +11,7 @@ import pytest
 from pierburg_ros.effects.page import page
 
 DOCS = Path(__file__).parents[2] / "docs"
-NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 
 
 def test_the_page_of_effects_is_written_from_the_declarations():

@@ -9,6 +9,8 @@ from support.recordings import NOMINAL, PIERBURG, recording
 
 from pierburg_ros.estimation.refinement import polished
 
+pytestmark = pytest.mark.search
+
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 

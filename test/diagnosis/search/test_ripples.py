@@ -11,6 +11,8 @@ from support.recordings import NOMINAL, PIERBURG, recording, recording_in_closed
 
 from pierburg_ros.diagnosis.search.candidates import starts_of
 
+pytestmark = pytest.mark.search
+
 OVER_ANGLE, IN_TIME = RIPPLES
 COGGING, PULSATION = OVER_ANGLE.variant, IN_TIME.variant
 SUPPLY = Explanation(("supply_voltage",))

@@ -3,14 +3,16 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
-
 from pierburg_ros.diagnosis.evidence.data import EvidenceData, evidence_of
-from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from pierburg_ros.diagnosis.search.explore import FINISHED, Exploration
 from pierburg_ros.diagnosis.search.fits import Search
+from support.recordings import NOMINAL, PIERBURG, recording
+
+from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.screening import Outlook, Prospect, most_promising
+
+pytestmark = pytest.mark.search
 
 LAG = Variant("sensor_lag", ("time_constant",))
 

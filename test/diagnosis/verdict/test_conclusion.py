@@ -4,17 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording, recording_under
-
 from pierburg_ros.diagnosis.evidence.data import choosing_blocks, evidence_of
 from pierburg_ros.diagnosis.search.explanation import WHEN, Explanation
 from pierburg_ros.diagnosis.search.explore import explored
 from pierburg_ros.diagnosis.search.fits import Search
+from pierburg_ros.estimation.resimulation import inputs_of
+from support.recordings import NOMINAL, PIERBURG, recording, recording_under
+
 from pierburg_ros.diagnosis.search.selection import adequate, overlooks, tied
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion, conclude
-from pierburg_ros.estimation.resimulation import inputs_of
 from pierburg_ros.plant import simulate_switched
 from pierburg_ros.recording import Channel, Recording
+
+pytestmark = pytest.mark.search
 
 DEAD = {"pwm_deadband.width": 0.02}
 

@@ -5,13 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
-
 from pierburg_ros.diagnosis.evidence.data import evidence_of
 from pierburg_ros.diagnosis.search.explanation import Explanation
 from pierburg_ros.diagnosis.verdict.recalibrations import recalibrations
 from pierburg_ros.diagnosis.verdict.residual_shape import described, described_over_time, fit_shape, nodes
+from support.recordings import NOMINAL, PIERBURG, recording
+
 from pierburg_ros.recording import read_recording
+
+pytestmark = pytest.mark.search
 
 RELAXATION = Path(__file__).parents[2] / "../shared/practice/practice-20"
 STIFFER = {"nonlinear_spring.cubic_stiffness": 0.04}

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
-
 from pierburg_ros.diagnosis.evidence.data import evidence_of
 from pierburg_ros.diagnosis.search.explanation import Explanation
 from pierburg_ros.diagnosis.search.explore import Exploration
 from pierburg_ros.diagnosis.verdict.shared import Shared, select
+from support.recordings import NOMINAL, PIERBURG, recording
+
+pytestmark = pytest.mark.search
 
 TRUTH = {"viscous_friction.coefficient": 0.03, "sensor_lag.time_constant": 0.01}
 
