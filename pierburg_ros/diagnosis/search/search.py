@@ -59,14 +59,21 @@ class Search:
         self.pool = pool
 
     def run(self) -> Fit:
-        """Grow explanations until the best cannot be bettered by one more quantity; gives that best one."""
-        best = self.add(Explanation())
-        while best.explanation.size < self.beam.depth and not accounts_for_all(best, self.data):
-            size = best.explanation.size
-            self._grow(best)
-            best = self._pruned()
-            if best.explanation.size <= size or self.exhausted:
+        """Grow explanations until the best leaves nothing or cannot be bettered; gives that best one.
+
+        Where no explanation of a size betters the smaller ones, but these do not account for all either, the next size
+        is tried all the same: two quantities may do what neither does alone.
+        """
+        best, size = self.add(Explanation()), 0
+        while size < self.beam.depth and not self.exhausted and not accounts_for_all(best, self.data):
+            leading = best if best.explanation.size == size else self.best_of_size(size)
+            if leading is None:
                 break
+            self._grow(leading)
+            best = self._pruned()
+            if best.explanation.size <= size and adequate(best):
+                break
+            size = max(size + 1, best.explanation.size)
         return best
 
     @property
