@@ -1,0 +1,58 @@
+"""What counts as evidence: not the steps of a coarse converter, and each thing once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.search.selection import ADEQUATE, EXPLAINED
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import counted, repetition
+
+
+def stepped(step: float, noise: float) -> Data:
+    """A nominal recording with noise, rounded to multiples of `step`."""
+    given = recording({}, duration=20.0)
+    clean = data_on(given).runs[0].simulated(NOMINAL)
+    values = clean + noise * np.random.default_rng(1).standard_normal(clean.size)
+    return data_on(replace(given, measured=np.round(values / step) * step))
+
+
+@pytest.mark.parametrize(("step", "noise"), [(0.015, 0.004), (0.02, 0.002), (0.05, 0.001)])
+def test_coarse_steps_are_seen(step: float, noise: float) -> None:
+    assert stepped(step, noise).step == pytest.approx(step, rel=1e-6)
+
+
+@pytest.mark.parametrize(("step", "noise"), [(0.00122, 0.001), (0.00122, 0.004), (0.005, 0.004), (1e-6, 0.002)])
+def test_steps_that_noise_hides_are_not(step: float, noise: float) -> None:
+    assert stepped(step, noise).step == 0.0
+
+
+def test_where_in_a_step_the_shaft_rests_is_no_evidence() -> None:
+    everywhere = np.linspace(-0.5, 0.5, 10_001)
+    assert counted(everywhere, 0.5) == pytest.approx(everywhere @ everywhere, rel=1e-3)
+    for place in (0.0, 0.3, -0.5):
+        assert counted(np.full(10_001, place), 0.5) == pytest.approx(counted(everywhere, 0.5))
+    assert counted(np.full(12, 0.7), 0.5) == pytest.approx(12 * (0.2**2 + 1 / 12))
+    assert counted(everywhere, 0.0) == pytest.approx(everywhere @ everywhere)
+
+
+def test_a_valve_that_rests_off_the_middle_of_steps_is_still_explained() -> None:
+    fit = Estimator(stepped(0.045, 0.001), NOMINAL).fit(Explanation())
+    assert np.sqrt(fit.chi2 / fit.solution.residual.size) > EXPLAINED
+    assert fit.ratio < ADEQUATE
+
+
+def test_white_residuals_count_in_full() -> None:
+    for seed in range(5):
+        assert repetition(np.random.default_rng(seed).standard_normal(20_000)) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("times", [5, 20])
+def test_what_is_said_many_times_counts_once(times: int) -> None:
+    """White noise, each value held for n samples, has the autocorrelation 1 - k / n: one and twice its sum is n."""
+    values = np.repeat(np.random.default_rng(6).standard_normal(40_000 // times), times)
+    assert repetition(values) == pytest.approx(times, rel=0.1)
