@@ -1,6 +1,7 @@
 """The architecture's rule of who may import whom, read from the sources."""
 
 import ast
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -26,7 +27,7 @@ ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification"}
 ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification"}
@@ -34,6 +35,38 @@ ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
+ROOMS = {
+    "diagnosis": {
+        "schema": set(),
+        "evidence": {"schema"},
+        "search": {"evidence"},
+        "location": {"schema", "evidence"},
+        "remainder": {"evidence", "search"},
+        "verdict": {"schema", "search", "remainder"},
+        "result": {"schema"},
+        "report": {"schema", "evidence", "search", "location", "remainder", "verdict", "result"},
+    },
+    "identification": {
+        "fit": set(),
+        "identifiability": {"fit"},
+        "paper": {"fit"},
+        "identify": {"fit", "identifiability", "paper"},
+        "experiment": {"fit", "identify", "paper"},
+    },
+    "nodes": {"core": set()},
+    "plant": {
+        "parameters": set(),
+        "model": {"parameters"},
+        "torques": set(),
+        "state": {"torques"},
+        "motion": {"torques"},
+        "gear": {"torques", "motion"},
+        "signal_path": {"torques", "motion", "gear", "state"},
+    },
+    "proof": {"formulation": set()},
+    "recording": {"formats": {"recording", "roles"}},
+}
+"""Rooms inside a part, and which others of them each may import. What is not named stands above, and may import all."""
 ROS = {
     "builtin_interfaces",
     "diagnostic_msgs",
@@ -49,16 +82,33 @@ ROS = {
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 
 
+def module_of(source):
+    """Full name of the module in a source file."""
+    return ".".join(source.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+MODULES = {module_of(source) for source in SOURCES}
+
+
+def statements(tree):
+    """All nodes of a syntax tree but those that only a type checker reads."""
+    for node in ast.iter_child_nodes(tree):
+        if not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
+            yield node
+            yield from statements(node)
+
+
 def imported(source):
     """Full names of the modules that a source file imports anywhere in it."""
-    for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+    for node in statements(ast.parse(source.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{source} imports relatively"
-            yield node.module
-            if node.module == "pierburg_ros":
-                yield from (f"pierburg_ros.{alias.name}" for alias in node.names)
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            yield from inner & MODULES
+            if inner - MODULES:
+                yield node.module
 
 
 def unit(source):
@@ -72,10 +122,30 @@ def units_imported(source):
     return {name[1] for name in names if name[0] == "pierburg_ros" and len(name) > 1} - {unit(source)}
 
 
+def room(source):
+    """The room inside its part that a source file belongs to, None for the front door."""
+    inner = source.relative_to(PACKAGE).parts[1:]
+    return inner[0].removesuffix(".py") if inner and inner[0] != "__init__.py" else None
+
+
+def rooms_imported(source):
+    """Other rooms of its own part that a source file imports; the front door is one of them."""
+    own = f"pierburg_ros.{unit(source)}"
+    names = (name.split(".") for name in imported(source) if f"{name}.".startswith(f"{own}."))
+    return {name[2] if len(name) > 2 else "__init__" for name in names} - {room(source)}
+
+
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_imports_point_down_the_architecture(source):
     allowed = FORMULATION if "formulation" in source.parts else ALLOWED[unit(source)]
     assert units_imported(source) <= allowed
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_imports_point_down_inside_each_part(source):
+    rooms = ROOMS.get(unit(source), {})
+    if room(source) in rooms:
+        assert rooms_imported(source) <= rooms[room(source)]
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
@@ -87,3 +157,39 @@ def test_ros_is_imported_in_nodes_alone(source):
 def test_every_part_of_the_package_has_its_place_in_the_rule():
     parts = {unit(source) for source in SOURCES}
     assert parts <= set(ALLOWED)
+
+
+def test_every_folder_inside_a_part_has_its_place_in_the_rule():
+    folders = {(unit(source), room(source)) for source in SOURCES if len(source.relative_to(PACKAGE).parts) > 2}
+    assert folders <= {(part, name) for part, rooms in ROOMS.items() for name in rooms}
+
+
+def test_every_room_of_the_rule_is_there():
+    there = {(unit(source), room(source)) for source in SOURCES}
+    assert {(part, name) for part, rooms in ROOMS.items() for name in rooms} <= there
+    assert set(ALLOWED) <= {part for part, _ in there}
+
+
+def test_no_circle_between_any_two_files():
+    graph = {module_of(source): set(imported(source)) & MODULES for source in SOURCES}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" <- ".join(error.args[1]))
+
+
+@pytest.mark.parametrize(
+    ("code", "names"),
+    [
+        ("import os.path", {"os.path"}),
+        ("from pierburg_ros import errors, kernel", {"pierburg_ros.errors", "pierburg_ros.kernel"}),
+        ("from pierburg_ros.plant.torques import friction, load", {"pierburg_ros.plant.torques.friction",
+                                                                   "pierburg_ros.plant.torques.load"}),
+        ("from pierburg_ros.plant import Model", {"pierburg_ros.plant"}),
+        ("def late():\n    from pierburg_ros.plant import decode", {"pierburg_ros.plant.decode"}),
+        ("if TYPE_CHECKING:\n    from pierburg_ros import plant\nimport os", {"os"}),
+    ],
+)  # fmt: skip
+def test_imports_are_read_wherever_they_stand(tmp_path, code, names):
+    (tmp_path / "source.py").write_text(code)
+    assert set(imported(tmp_path / "source.py")) == names

@@ -25,8 +25,9 @@ PATIENCE = 3
 """How many reaches without success end the search where events jump: a fit may have ended in a local minimum."""
 FIRST = 1e-5
 """Share of its range by which a quantity without a slope is moved first."""
-BRIEF = 4
-"""Iterations in which the other quantities are fitted again."""
+BRIEF = 6
+"""Iterations in which the other quantities are fitted again: as many as a parabola-shaped valley takes, whose bend is
+as long as the first reach. A fit that stands still ends sooner."""
 HALF_KNOWN = 0.5
 """A value whose 95 % interval reaches further than this share of it to either side is not identifiable."""
 

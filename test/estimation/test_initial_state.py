@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.recordings import NOMINAL
 
 from pierburg_ros.estimation.initial_state import InitialState, from_standstill
 from pierburg_ros.recording import Channel, Recording
@@ -16,61 +17,70 @@ def drawn(times, levels, seed=0):
     return Recording("run", "hall_voltage", TIME, np.interp(TIME, times, levels) + noise, Channel(TIME, 0.0 * TIME))
 
 
-def state(recording, nominal):
-    return InitialState.of(recording.time, recording.measured).state(nominal, "hall_voltage")
+def state(recording):
+    return InitialState.of(recording.time, recording.measured).state(NOMINAL, "hall_voltage")
 
 
-def test_a_shaft_seen_at_a_stop_starts_exactly_there(nominal):
-    assert state(drawn((0.0, 10.0), (0.4205, 0.4205)), nominal) == (0.0, 0.0)
+def test_a_shaft_seen_at_a_stop_starts_exactly_there():
+    assert state(drawn((0.0, 10.0), (0.4205, 0.4205))) == (0.0, 0.0)
 
 
-def test_a_shaft_held_half_way_starts_at_the_mean_of_its_first_samples(nominal):
-    angle, velocity = state(drawn((0.0, 10.0), (2.47, 2.47)), nominal)
+def test_a_shaft_held_half_way_starts_at_the_mean_of_its_first_samples():
+    angle, velocity = state(drawn((0.0, 10.0), (2.47, 2.47)))
     assert angle == pytest.approx(np.pi / 4, abs=3e-4)
     assert velocity == 0.0
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_one_that_rests_for_a_moment_starts_at_rest(nominal, seed):
-    angle, velocity = state(drawn((0.0, 0.04, 0.5, 10.0), (2.47, 2.47, 4.0, 4.0), seed), nominal)
+def test_one_that_rests_for_a_moment_starts_at_rest(seed):
+    angle, velocity = state(drawn((0.0, 0.04, 0.5, 10.0), (2.47, 2.47, 4.0, 4.0), seed))
     assert angle == pytest.approx(np.pi / 4, abs=2e-3)
     assert velocity == 0.0
 
 
-def test_a_shaft_that_moves_at_once_starts_with_its_velocity(nominal):
+def test_a_shaft_that_moves_at_once_starts_with_its_velocity():
     time = np.arange(2000) / 500.0
     moving = 2.47 + 2.0 * time + 1e-4 * np.random.default_rng(3).standard_normal(2000)
-    _, velocity = InitialState.of(time, moving).state(nominal, "hall_voltage")
+    _, velocity = InitialState.of(time, moving).state(NOMINAL, "hall_voltage")
     assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
 
 
 @pytest.mark.parametrize("rate", (-0.1, 0.05, 0.1))
-def test_one_that_creeps_starts_with_its_velocity(nominal, rate):
+def test_one_that_creeps_starts_with_its_velocity(rate):
     """Fifty samples, 0.1 s, tell a rate to 15 mV/s, which is 6 mrad/s."""
     recording = drawn((0.0, 0.15, 10.0), (2.0, 2.0 + 0.15 * rate, 2.0))
-    angle, velocity = state(recording, nominal)
+    angle, velocity = state(recording)
     assert velocity == pytest.approx(rate * (np.pi / 2) / 4.1, abs=0.02)
     assert angle == pytest.approx((2.0 - 0.42) * (np.pi / 2) / 4.1, abs=1.5e-3)
-    assert from_standstill(recording, nominal) is recording
+    assert from_standstill(recording, NOMINAL) is recording
 
 
 @pytest.mark.parametrize("levels", ((0.42, 3.0, 3.0, 0.42), (4.52, 3.0, 3.0, 0.42)))
-def test_one_that_sets_off_from_a_stop_loses_nothing(nominal, levels):
+def test_one_that_sets_off_from_a_stop_loses_nothing(levels):
     recording = drawn((0.0, 0.05, 1.0, 9.0), levels)
-    assert from_standstill(recording, nominal) is recording
+    assert from_standstill(recording, NOMINAL) is recording
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_one_that_slows_down_is_taken_up_where_it_comes_to_rest(nominal, seed):
+def test_one_that_slows_down_is_taken_up_where_it_comes_to_rest(seed):
     recording = drawn((0.0, 0.05, 0.4, 2.0, 5.0, 9.0), (2.0, 2.5, 3.0, 3.0, 0.42, 4.0), seed)
-    kept = from_standstill(recording, nominal)
+    kept = from_standstill(recording, NOMINAL)
     assert 0.4 <= kept.time[0] <= 0.46
     np.testing.assert_array_equal(kept.measured, recording.measured[recording.time >= kept.time[0]])
     assert kept.duration == recording.time[-1] - kept.time[0]
-    assert from_standstill(kept, nominal) is kept
+    assert from_standstill(kept, NOMINAL) is kept
 
 
-def test_one_that_rests_too_late_loses_nothing(nominal):
+def test_one_that_rests_too_late_loses_nothing():
     recording = drawn((0.0, 0.05, 4.0, 6.0, 9.0), (1.0, 1.5, 3.0, 3.0, 0.42))
-    assert from_standstill(recording, nominal) is recording
+    assert from_standstill(recording, NOMINAL) is recording
     assert not InitialState.of(recording.time, recording.measured).known
+
+
+def test_the_angle_is_that_of_the_model_that_is_simulated():
+    """2.47 V is half way between 0.42 V and 4.52 V, and a third of the way between 1.42 V and 4.57 V."""
+    found = InitialState.of(TIME, np.full(TIME.size, 2.47))
+    other = NOMINAL.with_values({"hall_voltage_closed": 1.42, "hall_voltage_open": 4.57})
+    assert found.state(NOMINAL, "hall_voltage") == (pytest.approx(np.pi / 4), 0.0)
+    assert found.state(other, "hall_voltage") == (pytest.approx(np.pi / 6), 0.0)
+    assert found.state(NOMINAL, "position") == (np.pi / 2, 0.0)

@@ -1,6 +1,7 @@
 """The bounded least squares: known minima, bounds, rough costs."""
 
 import numpy as np
+import pytest
 
 from pierburg_ros.estimation.least_squares import minimise
 
@@ -38,3 +39,50 @@ def test_without_parameters_it_gives_the_residual() -> None:
     solution = minimise(lambda _: np.array([3.0, 4.0]), nothing, nothing, nothing, nothing)
     assert solution.cost == 25.0
     assert solution.jacobian.shape == (2, 0)
+
+
+def test_a_quantity_whose_bounds_coincide_stays_and_leaves_no_slope() -> None:
+    def residual(x):
+        return np.array([x[0] - 3.0, x[1] - x[0] - 1.0])
+
+    lower, upper = np.array([-5.0, 0.5]), np.array([5.0, 0.5])
+    solution = minimise(residual, np.array([0.0, 0.5]), lower, upper, STEP)
+    # With y = 0.5 the cost (x - 3)^2 + (x + 0.5)^2 is least half way between 3 and -0.5.
+    assert np.allclose(solution.point, [1.25, 0.5], atol=1e-4)
+    assert solution.point[1] == 0.5
+    assert np.array_equal(solution.jacobian[:, 1], [0.0, 0.0])
+
+
+def test_where_every_bound_coincides_nothing_is_searched() -> None:
+    asked = []
+
+    def residual(x):
+        asked.append(x)
+        return x - 3.0
+
+    solution = minimise(residual, np.zeros(2), np.ones(2), np.ones(2), STEP)
+    assert np.array_equal(solution.point, [1.0, 1.0])
+    assert len(asked) == 1
+
+
+@pytest.mark.parametrize("iterations", [0, 1, 3, 50])
+def test_the_jacobian_is_that_at_the_point_wherever_the_descent_ended(iterations: int) -> None:
+    def residual(x):
+        return np.array([10.0 * (x[1] - x[0] ** 2), 1.0 - x[0]])
+
+    far = np.full(2, 10.0)
+    solution = minimise(residual, np.array([-1.2, 1.0]), -far, far, STEP, iterations, tolerance=0.0)
+    # One-sided differences of 1e-5 are off by half the curvature, 20 / 2, times the step.
+    exact = [[-20.0 * solution.point[0], 10.0], [-1.0, 0.0]]
+    assert np.allclose(solution.jacobian, exact, atol=1.1e-4)
+    assert np.array_equal(solution.residual, residual(solution.point))
+
+
+def test_the_jacobian_on_a_bound_is_taken_from_within() -> None:
+    def residual(x):
+        assert np.all(x <= 1.0)
+        return np.array([np.sqrt(2.0 - x[0]) - 0.1, x[1] - 2.0])
+
+    solution = minimise(residual, np.zeros(2), np.full(2, -1.0), np.ones(2), STEP)
+    assert np.array_equal(solution.point, [1.0, 1.0])
+    assert np.allclose(solution.jacobian, [[-0.5, 0.0], [0.0, 1.0]], atol=1e-4)

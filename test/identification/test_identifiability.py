@@ -2,7 +2,7 @@
 
 import pytest
 
-from pierburg_ros.estimation.fit import fit
+from pierburg_ros.identification.fit import fit
 from pierburg_ros.identification.identifiability import identifiability
 from pierburg_ros.identification.identify import free_names
 from pierburg_ros.identification.paper.lumps import fitted_lumps

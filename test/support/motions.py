@@ -3,8 +3,9 @@
 import numpy as np
 from support.recordings import PIERBURG
 
-from pierburg_ros.diagnosis.evidence.data import Run
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
+from pierburg_ros.estimation.initial_state import InitialState
+from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Inputs
 
 NOISE = 0.002
@@ -29,8 +30,8 @@ def run_along(corners=CORNERS, duty=None, rate: float = 500.0, seed: int = 0) ->
         inputs,
         time,
         measured,
-        float(angles[0]),
-        0.0,
+        "hall_voltage",
+        InitialState.of(time, measured),
         np.ones(time.size, dtype=bool),
         np.zeros(time.size, dtype=bool),
     )

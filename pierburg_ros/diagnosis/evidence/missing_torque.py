@@ -12,6 +12,8 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
+from pierburg_ros.plant.decode import decoded
+from pierburg_ros.signals import Signal
 
 GRID = 0.02
 """Time step [s] on which missing torque is estimated."""
@@ -59,15 +61,14 @@ def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
     value = model.values
     scale = data.angle_per_unit
     grid = np.arange(run.time[0], run.time[-1], GRID)
-    simulated = _averaged(run.time, run.simulated(model), grid) * scale
-    measured = _averaged(run.time, run.measured, grid) * scale
+    simulated, measured = (_averaged(run.time, values, grid) for values in (run.simulated(model), run.measured))
     damping = braking(model)
     stiffness = value.get("spring_stiffness", 0.0)
-    error = measured - simulated
+    error = scale * (measured - simulated)
     torque = -(damping * np.gradient(error, GRID) + stiffness * error)
-    speeds = np.gradient(measured, GRID), np.gradient(simulated, GRID)
+    speeds = scale * np.gradient(measured, GRID), scale * np.gradient(simulated, GRID)
     moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
-    time, angle, velocity = grid[moving], measured[moving], speeds[0][moving]
+    time, angle, velocity = grid[moving], decoded(model, measured[moving], run.quantity), speeds[0][moving]
     return MissingTorque(time, angle, velocity, torque[moving], value["gear_ratio"], float(run.time[-1]))
 
 

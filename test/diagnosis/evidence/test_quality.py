@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.motions import CORNERS, NOISE, run_along
-from support.recordings import PIERBURG, recording
+from support.recordings import PIERBURG, data_on, recording
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.evidence.quality import data_quality, limits_of, refuse_unusable
@@ -35,7 +35,9 @@ def test_counts_gaps_and_jitter():
     kept = (run.time < 4.0) | (run.time > 4.5)
     random = np.random.default_rng(0)
     time = np.sort(run.time + random.uniform(0.0, 0.001, run.time.size))
-    gappy = replace(run, time=time[kept], measured=run.measured[kept], training=run.training[kept])
+    gappy = replace(
+        run, time=time[kept], measured=run.measured[kept], train=run.train[kept], validation=run.validation[kept]
+    )
     quality = data_quality([gappy], PIERBURG, NOISE)
     assert quality.gaps == 1 and "gaps" in kinds(gappy)
     assert quality.jitter == pytest.approx(0.001 / np.sqrt(6.0), rel=0.1)
@@ -65,7 +67,7 @@ def test_says_what_short_slow_and_narrow_recordings_leave_open():
 def test_an_actuator_without_stops_lacks_none():
     bench = read_actuator("xl330")
     run = run_along(duty=swinging)
-    position = replace(run, measured=(run.measured - 0.42) / 4.1 * np.pi / 2)
+    position = replace(run, quantity="position", measured=(run.measured - 0.42) / 4.1 * np.pi / 2)
     assert not kinds(position, bench) & {"closed_stop", "open_stop"}
     assert "closed stop" not in data_quality([position], bench, 0.001).excited
 
@@ -74,3 +76,11 @@ def test_refuses_what_is_too_short_to_judge():
     refuse_unusable([recording({}, duration=3.0)])
     with pytest.raises(InputError, match=r"too short \(600 samples over 1.20 s\); expected at least 200 samples"):
         refuse_unusable([recording({}, duration=1.2)])
+
+
+@pytest.mark.parametrize(("begin", "moves"), [(0.0, False), (0.64, False), (2.42, True), (3.04, True)])
+def test_says_when_samples_before_a_standstill_are_left_out(begin, moves):
+    data = data_on(recording({}).select(begin, 24.0))
+    assert (data.runs[0].time[0] > 0.0) == moves
+    found = {limit.kind for limit in limits_of(data.runs, PIERBURG, data.noise)}
+    assert ("begins_moving" in found) == moves

@@ -1,43 +1,66 @@
-"""A linear step tells what an addition promises, and a pair that promises much is fitted before all others."""
+"""A linear step tells what an addition promises, and what is missing beside a part of the truth promises most."""
 
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
-from pierburg_ros.diagnosis.evidence.data import EvidenceData, evidence_of
 from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
-from pierburg_ros.diagnosis.search.explore import FINISHED, Exploration
-from pierburg_ros.diagnosis.search.fits import Search
-from support.recordings import NOMINAL, PIERBURG, recording
+from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.screening import Outlook, Prospect, most_promising
+from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation, Variant
 
 pytestmark = pytest.mark.search
 
 LAG = Variant("sensor_lag", ("time_constant",))
+PRELOAD = Explanation(("spring_preload",))
+BOTH = {"sensor_lag.time_constant": 0.01, "spring_preload": 0.295}
 
 
-def evidence(changes: dict[str, float]) -> EvidenceData:
-    return evidence_of([recording(changes)], PIERBURG)
-
-
-def prospects_on(data: EvidenceData, explanation: Explanation) -> list[Prospect]:
-    search = Search(data, NOMINAL)
-    outlook = Outlook(search, search, drifting(NOMINAL), lambda _: None)
+def prospects_on(data: Data, explanation: Explanation, glance: float = 24.0) -> list[Prospect]:
+    whole, first = Estimator(data, NOMINAL), Estimator(data.cut(glance), NOMINAL)
     with ThreadPoolExecutor(2) as pool:
-        return outlook.on(search.fit(explanation), {}, pool)
+        return screened(whole.fit(explanation), whole, first, drifting(NOMINAL), pool, lambda _: None)
 
 
-@pytest.mark.parametrize("seed", [Explanation(("spring_preload",)), Explanation((), (LAG,))])
+@pytest.mark.parametrize("seed", [PRELOAD, Explanation((), (LAG,))], ids=lambda seed: seed.label)
 def test_what_is_missing_beside_a_part_of_the_truth_promises_most(seed: Explanation) -> None:
-    prospects = prospects_on(evidence({"sensor_lag.time_constant": 0.01, "spring_preload": 0.295}), seed)
+    prospects = prospects_on(data_on(recording(BOTH)), seed)
     (best,) = most_promising(prospects, 1)
     assert best.explanation == Explanation(("spring_preload",), (LAG,))
     assert 0.95 < best.promise < 0.5 * best.base.ratio
 
 
-def test_a_pair_that_accounts_for_all_is_found_before_others_are_grown() -> None:
-    data = evidence({"sensor_lag.time_constant": 0.012, "spring_preload": 0.32})
-    exploration = Exploration(data, NOMINAL)
-    assert exploration.run().explanation == Explanation(("spring_preload",), (LAG,))
-    assert len(exploration.of_size(2)) <= FINISHED
+def test_every_addition_is_looked_at_once() -> None:
+    prospects = prospects_on(data_on(recording(BOTH, duration=6.0)), PRELOAD)
+    explanations = [prospect.explanation for prospect in prospects]
+    assert len(set(explanations)) == len(explanations)
+    assert all(explanation.size == 2 for explanation in explanations)
+    drifts = {prospect.addition for prospect in prospects if prospect.drifts}
+    assert drifts == set(drifting(NOMINAL)) - {"spring_preload"}
+
+
+def test_a_change_in_the_middle_is_looked_for_alone_and_in_one_recording() -> None:
+    first, second = (recording({}, duration=6.0, seed=seed) for seed in range(2))
+    for data, seed, expected in (
+        (data_on(first), Explanation(), True),
+        (data_on(first, second), Explanation(), False),
+        (data_on(first), Explanation((), (LAG,)), False),
+    ):
+        assert any(prospect.changes for prospect in prospects_on(data, seed)) == expected
+
+
+def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
+    """A weaker supply from 8 s on leaves no mark in the first four seconds, one from the start does."""
+    plain = data_on(recording({}, duration=12.0))
+    (run,) = plain.runs
+    weak = run.simulated(NOMINAL.with_values({"supply_voltage": 12.5}))
+    for begin, size in ((8.0, run.time.size), (0.0, 2000)):
+        made = recording({}, duration=12.0)
+        object.__setattr__(made, "measured", np.where(run.time < begin, made.measured, weak))
+        looked = {prospect.base.solution.residual.size for prospect in prospects_on(data_on(made), Explanation(), 4.0)}
+        assert max(looked) == pytest.approx(0.75 * 6000, rel=0.02)
+        assert min(looked) == pytest.approx(0.75 * size, rel=0.02 if size == 6000 else 0.3)

@@ -3,11 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
+from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.evidence.data import evidence_of
-from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
-from pierburg_ros.diagnosis.search.fits import Fit, Search
 from pierburg_ros.diagnosis.search.selection import (
     SIGNIFICANT,
     accounts_for_all,
@@ -16,54 +13,77 @@ from pierburg_ros.diagnosis.search.selection import (
     betters,
     complete,
     gain,
+    overlooks,
+    tied,
 )
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))
 TRUE = {"sensor_lag.time_constant": 0.012}
 
 
-def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[Search, list[Fit]]:
+def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[Estimator, list[Fit]]:
     """Fits to a recording of the nominal valve with `changes`."""
-    search = Search(evidence_of([recording({**TRUE, **changes})], PIERBURG), NOMINAL)
-    return search, [search.fit(explanation, TRUE) for explanation in explanations]
+    estimator = Estimator(data_on(recording({**TRUE, **changes})), NOMINAL)
+    return estimator, [estimator.fit(explanation, TRUE) for explanation in explanations]
 
 
 def test_what_simulators_differ_by_is_a_third_of_a_millivolt() -> None:
-    search, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
+    estimator, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
     samples = lag.solution.residual.size
-    assert allowance(lag, search.data) == pytest.approx(samples * (0.0003 / search.data.noise) ** 2, rel=0.01)
-    assert allowance(drift, search.data) == 0.0
+    assert allowance(lag, estimator.data) == pytest.approx(samples * (0.0003 / estimator.data.noise) ** 2, rel=0.01)
+    assert allowance(drift, estimator.data) == 0.0
 
 
 def test_a_drift_too_small_to_be_more_than_that_is_not_named_beside_an_effect() -> None:
     both = Explanation(("spring_preload",), (LAG,))
-    search, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
+    estimator, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
     assert gain(lag, larger) > SIGNIFICANT
-    assert accounts_for_all(lag, search.data)
-    assert not betters(larger, lag, search)
+    assert accounts_for_all(lag, estimator.data)
+    assert not betters(larger, lag, estimator)
 
 
 def test_a_plain_drift_beside_an_effect_betters_it() -> None:
     both = Explanation(("spring_preload",), (LAG,))
-    search, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
-    assert not accounts_for_all(lag, search.data)
-    assert accounts_for_all(larger, search.data)
-    assert betters(larger, lag, search)
+    estimator, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
+    assert not accounts_for_all(lag, estimator.data)
+    assert accounts_for_all(larger, estimator.data)
+    assert betters(larger, lag, estimator)
 
 
 def test_what_is_bent_to_the_training_samples_betters_nothing() -> None:
     both = Explanation(("spring_preload",), (LAG,))
-    search, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
+    estimator, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
     elsewhere = replace(larger, model=larger.model.with_values({"spring_preload": 0.32}))
     assert gain(lag, elsewhere) == gain(lag, larger)
-    assert not betters(elsewhere, lag, search)
+    assert not betters(elsewhere, lag, estimator)
 
 
 def test_white_noise_larger_than_estimated_is_all_there_is_and_structure_is_not() -> None:
-    data = evidence_of([recording({**TRUE, "spring_preload": 0.2901})], PIERBURG)
+    data = data_on(recording({**TRUE, "spring_preload": 0.2901}))
     low, explanation = replace(data, noise=0.0028), Explanation((), (LAG,))
-    structured = Search(data, NOMINAL).fit(explanation, TRUE)
-    noise = Search(low, NOMINAL).fit(replace(explanation, drifted=("spring_preload",)), TRUE)
+    structured = Estimator(data, NOMINAL).fit(explanation, TRUE)
+    noise = Estimator(low, NOMINAL).fit(replace(explanation, drifted=("spring_preload",)), TRUE)
     assert 1.03 < structured.ratio < noise.ratio < 1.1
     assert adequate(noise) and complete(noise)
     assert not adequate(structured) and not complete(structured)
+
+
+def test_what_only_the_validation_samples_show_is_overlooked() -> None:
+    load = {"external_load.torque": 0.06, "external_load.start": 3.2, "external_load.end": 3.7}
+    data = data_on(recording(load))
+    (run,) = data.runs
+    during = (run.time > 3.0) & (run.time < 9.0)
+    hidden = replace(data, runs=(replace(run, train=run.train & ~during, validation=during),))
+    for given, expected in ((hidden, True), (data_on(recording({})), False)):
+        estimator = Estimator(given, NOMINAL)
+        nominal = estimator.fit(Explanation())
+        assert adequate(nominal)
+        assert overlooks(nominal, estimator) == expected
+
+
+def test_only_known_fits_are_tied() -> None:
+    """A model with a residual torque stands beside what was searched."""
+    estimator = Estimator(data_on(recording({}, duration=5.0)), NOMINAL)
+    assert tied(estimator.fit(Explanation()), [], estimator) == []

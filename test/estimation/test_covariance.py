@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.estimation.uncertainty import correlation_length, uncertainty
+from pierburg_ros.estimation.covariance import correlation_length, covariance_of
 
 
 def autoregressive(size, memory, seed):
@@ -18,20 +18,20 @@ def autoregressive(size, memory, seed):
 
 def test_white_noise_gives_the_classical_deviation_of_a_mean():
     residual = 0.003 * np.random.default_rng(0).standard_normal(20_000)
-    found = uncertainty(-np.ones((residual.size, 1)), (residual,))
+    found = covariance_of(-np.ones((residual.size, 1)), (residual,))
     assert found.white
-    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(0.003 / np.sqrt(20_000), rel=0.02)
+    assert np.sqrt(found.matrix[0, 0]) == pytest.approx(0.003 / np.sqrt(20_000), rel=0.02)
 
 
 def test_correlated_noise_widens_the_deviation_as_theory_says():
     memory, size = 0.9, 100_000
     residual = autoregressive(size, memory, 1)
     residual -= residual.mean()
-    found = uncertainty(-np.ones((size, 1)), (residual,))
+    found = covariance_of(-np.ones((size, 1)), (residual,))
     # Variance of the mean of first-order autoregressive noise: innovation / (1 - memory)^2 / size.
     expected = 1.0 / (1.0 - memory) / np.sqrt(size)
     assert not found.white
-    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(expected, rel=0.15)
+    assert np.sqrt(found.matrix[0, 0]) == pytest.approx(expected, rel=0.15)
 
 
 def test_white_noise_has_no_correlation_length_and_slow_noise_a_long_one():
@@ -44,5 +44,23 @@ def test_a_direction_without_data_is_undetermined():
     random = np.random.default_rng(5)
     column = random.standard_normal(1000)
     jacobian = np.column_stack([column, 2.0 * column, random.standard_normal(1000)])
-    found = uncertainty(jacobian, (random.standard_normal(1000),))
+    found = covariance_of(jacobian, (random.standard_normal(1000),))
     assert found.undetermined.tolist() == [True, True, False]
+
+
+def test_what_two_recordings_say_is_not_mixed():
+    """Slow noise within each of many recordings, none between them: the mean is known by their number."""
+    lines = np.random.default_rng(6).standard_normal(400)
+    parts = tuple(np.full(50, level) for level in lines - lines.mean())
+    found = covariance_of(-np.ones((400 * 50, 1)), parts)
+    assert not found.white
+    assert found.blocks == 400
+    assert np.sqrt(found.matrix[0, 0]) == pytest.approx(np.std(lines, ddof=1) / np.sqrt(400), rel=0.01)
+
+
+def test_few_blocks_leave_more_doubt():
+    """Student's factor for 95 % is 2.57 with 5 degrees of freedom, and 1.96 with many."""
+    lines = np.random.default_rng(7).standard_normal(6)
+    few = covariance_of(-np.ones((300, 1)), tuple(np.full(50, level) for level in lines - lines.mean()))
+    assert few.factor == pytest.approx(2.571, abs=0.001)
+    assert covariance_of(-np.ones((300, 1)), (np.random.default_rng(8).standard_normal(300),)).factor < 1.97

@@ -5,9 +5,9 @@ import pytest
 from support.closed_form import FRICTION_ANGLE, GAIN, NOISE, PRELOAD_ANGLE, TIME_CONSTANT
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.fit import fit
 from pierburg_ros.identification.experiment.excitation import duty_sequence
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.identification.fit import fit
 from pierburg_ros.identification.identify import free_names
 from pierburg_ros.identification.paper.lumps import fitted_lumps
 from pierburg_ros.recording import Recording

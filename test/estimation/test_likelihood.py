@@ -1,25 +1,24 @@
-"""Steps of the converter are seen where they are coarse beside the noise, and only there."""
+"""What counts as evidence: not the steps of a coarse converter, and each thing once."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, PIERBURG, recording
+from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData, evidence_of
-from pierburg_ros.diagnosis.evidence.resolution import counted
-from pierburg_ros.diagnosis.search.explanation import Explanation
-from pierburg_ros.diagnosis.search.fits import Search
 from pierburg_ros.diagnosis.search.selection import ADEQUATE, EXPLAINED
-from pierburg_ros.diagnosis.verdict.conclusion import rounded
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import counted, repetition
 
 
-def stepped(step: float, noise: float) -> EvidenceData:
+def stepped(step: float, noise: float) -> Data:
     """A nominal recording with noise, rounded to multiples of `step`."""
     given = recording({}, duration=20.0)
-    clean = evidence_of([given], PIERBURG).runs[0].simulated(NOMINAL)
+    clean = data_on(given).runs[0].simulated(NOMINAL)
     values = clean + noise * np.random.default_rng(1).standard_normal(clean.size)
-    return evidence_of([replace(given, measured=np.round(values / step) * step)], PIERBURG)
+    return data_on(replace(given, measured=np.round(values / step) * step))
 
 
 @pytest.mark.parametrize(("step", "noise"), [(0.015, 0.004), (0.02, 0.002), (0.05, 0.001)])
@@ -42,15 +41,18 @@ def test_where_in_a_step_the_shaft_rests_is_no_evidence() -> None:
 
 
 def test_a_valve_that_rests_off_the_middle_of_steps_is_still_explained() -> None:
-    data = stepped(0.045, 0.001)
-    fit = Search(data, NOMINAL).fit(Explanation())
+    fit = Estimator(stepped(0.045, 0.001), NOMINAL).fit(Explanation())
     assert np.sqrt(fit.chi2 / fit.solution.residual.size) > EXPLAINED
     assert fit.ratio < ADEQUATE
 
 
-def test_the_rounded_model_gives_values_on_the_grid() -> None:
-    data = stepped(0.02, 0.002)
-    fit = rounded(Search(data, NOMINAL).fit(Explanation()), 0.02)
-    simulated = data.runs[0].simulated(fit.model)
-    np.testing.assert_allclose(simulated / 0.02, np.round(simulated / 0.02), atol=1e-9)
-    assert fit.explanation.effects == ("sensor_quantization",)
+def test_white_residuals_count_in_full() -> None:
+    for seed in range(5):
+        assert repetition(np.random.default_rng(seed).standard_normal(20_000)) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("times", [5, 20])
+def test_what_is_said_many_times_counts_once(times: int) -> None:
+    """White noise, each value held for n samples, has the autocorrelation 1 - k / n: one and twice its sum is n."""
+    values = np.repeat(np.random.default_rng(6).standard_normal(40_000 // times), times)
+    assert repetition(values) == pytest.approx(times, rel=0.1)

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from pierburg_ros.signals import Signal
 from support.recordings import NOMINAL
 
-from pierburg_ros.diagnosis.evidence.data import EvidenceData
-from pierburg_ros.diagnosis.search.explanation import Explanation
-from pierburg_ros.diagnosis.search.fits import Search
-from pierburg_ros.diagnosis.search.intervals import SURE, estimates
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.intervals import SURE, estimates
 
-Signal = NDArray[np.float64]
 X, Y = "spring_preload", "coulomb_friction"
 WIDE = 1e4
 NOISE = np.random.default_rng(2).standard_normal(400)
@@ -32,11 +31,8 @@ class Values:
 class Plane:
     """Coordinates that are the values themselves."""
 
-    def bounds(self) -> tuple[Signal, Signal]:
-        return np.full(2, -WIDE), np.full(2, WIDE)
-
-    def steps(self) -> Signal:
-        return np.full(2, 1e-5)
+    bounds = (np.full(2, -WIDE), np.full(2, WIDE))
+    steps = np.full(2, 1e-5)
 
     def point(self, values: Mapping[str, float]) -> Signal:
         return np.array([values[X], values[Y]])
@@ -45,13 +41,13 @@ class Plane:
         return {X: float(point[0]), Y: float(point[1])}
 
 
-class Known(Search):
-    """A search over two numbers whose residual is given, beside white noise that they do not touch."""
+class Known(Estimator):
+    """An estimator of two numbers whose residual is given, beside white noise that they do not touch."""
 
     def __init__(self, given: Callable[[float, float], list[float]]) -> None:
         self.nominal = NOMINAL
         self.given = given
-        self.data = EvidenceData(NOMINAL.actuator, (), noise=1.0)
+        self.data = Data(NOMINAL.actuator, (), noise=1.0)
 
     def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()
@@ -64,8 +60,8 @@ class Known(Search):
 
 
 def interval(residual: Callable[[float, float], list[float]], name: str) -> tuple[float, float]:
-    search = Known(residual)
-    found = estimates(search, search.fit(Explanation((X, Y)), {X: 1.0, Y: 1.0}))[name]
+    estimator = Known(residual)
+    found = estimates(estimator, estimator.fit(Explanation((X, Y)), {X: 1.0, Y: 1.0}))[name]
     return found.low, found.high
 
 

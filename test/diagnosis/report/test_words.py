@@ -1,0 +1,47 @@
+"""Why an effect is believed, and what to record next, in words with their numbers."""
+
+import pytest
+
+from pierburg_ros.diagnosis.evidence.quality import Limit
+from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
+from pierburg_ros.diagnosis.schema import Effect, NotTestable
+from pierburg_ros.diagnosis.verdict.conclusion import Support
+
+TIED = Effect(
+    id="viscous_friction",
+    confidence=0.99,
+    parameters={},
+    indistinguishable_from=[["armature_resistance", "torque_constant"]],
+    explanation="",
+)
+
+
+@pytest.mark.parametrize(
+    ("support", "words"),
+    [
+        (Support(0.99, gain=812.34), "leaves 812 more in chi-squared"),
+        (Support(1.0), "All samples lie on this grid"),
+        (Support(0.8, left_out=LeftOut(0.0213, 0.0104, 3, 4)), "0.0104 V with it; it helps in 3 of 4"),
+    ],
+    ids=["evidence", "grid", "recordings left out"],
+)
+def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
+    assert words in reason(support, "V")
+
+
+def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
+    hidden = [NotTestable(id="backlash", why="", record="duty below 0")]
+    limit = Limit("slow_sampling", "sampled at 60 Hz")
+    steps = advice("missing_physics", [TIED, TIED], {}, hidden, [limit, limit])
+    assert steps[0] == limit.record
+    assert steps[1].startswith("To tell viscous_friction from armature resistance and torque constant: ")
+    assert "log the motor current" in steps[1]
+    assert steps[2] == "To see backlash: duty below 0."
+    assert len(steps) == 3
+
+
+def test_what_decides_nothing_is_said_before_anything_else() -> None:
+    still = Limit("no_movement", "The shaft never moves.", decisive=True)
+    assert cautioned([still], "All is well.") == "Nothing can be concluded: The shaft never moves. All is well."
+    assert cautioned([Limit("short", "5 s only.")], "All is well.") == "All is well."

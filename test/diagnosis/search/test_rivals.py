@@ -1,0 +1,79 @@
+"""What could stand for an effect by other means is fitted from where the effect fades."""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+
+import pytest
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.search.rivals import fit_rivals
+from pierburg_ros.diagnosis.search.search import Search
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant, quantities, without
+
+VISCOUS = Variant("viscous_friction", ("coefficient",))
+PLAY = Variant("backlash", ("gap", "motor_friction_share"))
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[Executor]:
+    with ThreadPoolExecutor(2) as threads:
+        yield threads
+
+
+def with_rivals(search: Search, best: Fit, drifts: tuple[str, ...]) -> Search:
+    """The search with the rivals of `best` that drift; what is left of it without a quantity counts as grown."""
+    search.drifts = drifts
+    for quantity in quantities(best.explanation):
+        search.expanded.add(without(best.explanation, quantity))
+    fit_rivals(search, best)
+    return search
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        ("armature_resistance", "torque_constant"),
+        ("armature_resistance", "supply_voltage"),
+        ("torque_constant", "supply_voltage"),
+    ],
+    ids="-".join,
+)
+def test_what_stands_for_viscous_friction_is_found_as_it_fades(pair: tuple[str, str], pool: Executor) -> None:
+    """Viscous friction b at the shaft is (k_g k_m)^2 / R larger by b at the same k_g k_m V / R: an exact tie."""
+    search = Search(data_on(recording({"viscous_friction.coefficient": 0.025})), NOMINAL, pool)
+    best = search.add(Explanation((), (VISCOUS,)), {"viscous_friction.coefficient": 0.02})
+    other = with_rivals(search, best, pair).fits[Explanation(pair)]
+    assert other.chi2 == pytest.approx(best.chi2, rel=1e-3)
+    value = other.values
+    braking = (37.3 * value["torque_constant"]) ** 2 / value["armature_resistance"]
+    push = 37.3 * value["torque_constant"] * value["supply_voltage"] / value["armature_resistance"]
+    assert braking == pytest.approx((37.3 * 0.022) ** 2 / 4.139 + 0.025, rel=1e-3)
+    assert push == pytest.approx(37.3 * 0.022 * 13.5 / 4.139, rel=1e-3)
+
+
+def test_what_stands_for_viscous_friction_beside_play_is_found_as_it_fades(pool: Executor) -> None:
+    truth = {"viscous_friction.coefficient": 0.025, "backlash.gap": 0.04, "backlash.motor_friction_share": 0.1}
+    search = Search(data_on(recording(truth, duties=(-0.2, 0.36))), NOMINAL, pool)
+    best = search.add(Explanation((), (PLAY, VISCOUS)), truth)
+    pair = ("armature_resistance", "torque_constant")
+    assert best.ratio < 1.03
+    assert with_rivals(search, best, pair).fits[Explanation(pair, (PLAY,))].ratio < 1.03
+
+
+def test_a_load_that_acts_throughout_is_a_preload(pool: Executor) -> None:
+    """0.03 N.m that close, from the first sample to the last, are 0.03 N.m more preload."""
+    search = Search(data_on(recording({"spring_preload": 0.32}, duration=12.0)), NOMINAL, pool)
+    load = Variant("external_load", ("torque",), (("start", 0.0), ("end", 0.0)))
+    best = search.add(Explanation((), (load,)), {"external_load.torque": 0.02})
+    other = with_rivals(search, best, ("spring_preload",)).fits[Explanation(("spring_preload",))]
+    assert best.values["external_load.torque"] == pytest.approx(0.03, rel=0.02)
+    assert other.values["spring_preload"] == pytest.approx(0.29 + best.values["external_load.torque"], rel=1e-3)
+    assert other.chi2 == pytest.approx(best.chi2, rel=1e-3)
+
+
+def test_a_drift_has_no_rivals_but_what_may_be_added_without_it(pool: Executor) -> None:
+    search = Search(data_on(recording({"spring_preload": 0.32}, duration=5.0)), NOMINAL, pool)
+    best = search.add(Explanation(("spring_preload",)))
+    with_rivals(search, best, ("spring_preload", "coulomb_friction"))
+    assert set(search.fits) == {Explanation(("spring_preload",)), Explanation()}

@@ -1,0 +1,188 @@
+"""How a search grows explanations: it finds pairs, keeps to its beam, and ends when its budget is spent."""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
+
+import pytest
+from support.fits import made_up, of_chi2
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.search import search as module
+from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.search import Beam, Search
+from pierburg_ros.diagnosis.search.selection import TIED
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant
+
+LAG = Variant("sensor_lag", ("time_constant",))
+VISCOUS = Variant("viscous_friction", ("coefficient",))
+LOAD = Variant("external_load", ("torque", "start", "end"))
+NOTHING = Explanation()
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[Executor]:
+    with ThreadPoolExecutor(2) as threads:
+        yield threads
+
+
+@pytest.fixture(scope="module")
+def short() -> Data:
+    return data_on(recording({}, duration=5.0))
+
+
+@pytest.fixture
+def empty(short: Data, pool: Executor) -> Search:
+    """A search that has fitted nothing yet."""
+    return Search(short, NOMINAL, pool)
+
+
+@pytest.mark.search
+def test_a_pair_that_accounts_for_all_is_found_before_others_are_grown(pool: Executor) -> None:
+    data = data_on(recording({"sensor_lag.time_constant": 0.012, "spring_preload": 0.32}))
+    found = Search(data, NOMINAL, pool)
+    assert found.run().explanation == Explanation(("spring_preload",), (LAG,))
+    assert found.expanded == {NOTHING}
+    assert len(found.of_size(2)) <= Beam().ahead // 3
+
+
+@pytest.mark.search
+def test_a_spent_budget_ends_the_search_and_is_told() -> None:
+    """The first round alone looks at 60 prospects or so, and finds one quantity of three."""
+    true = {"sensor_lag.time_constant": 0.012, "viscous_friction.coefficient": 0.03, "spring_preload": 0.32}
+    data = data_on(recording(true, duration=8.0))
+    found = search(data, NOMINAL, beam=Beam(budget=10))
+    assert found.exhausted
+    assert found.chosen.explanation.size <= 2
+    assert max(explanation.size for explanation in found.fits) <= 2
+
+
+@pytest.mark.search
+def test_explanations_grow_no_deeper_than_the_beam() -> None:
+    true = {"sensor_lag.time_constant": 0.012, "spring_preload": 0.32}
+    found = search(data_on(recording(true, duration=8.0)), NOMINAL, beam=Beam(depth=1))
+    assert not found.exhausted
+    assert found.chosen.explanation.size == 1
+    assert found.chosen.ratio > 1.1
+
+
+class Grown(Search):
+    """A search that fits nothing: it keeps from which explanations it was asked to grow."""
+
+    def __init__(self, data: Data, pool: Executor, ratios: dict[Explanation, float], beam: Beam) -> None:
+        super().__init__(data, NOMINAL, pool, beam=beam)
+        self.ratios = ratios
+        self.seeds: list[Explanation] = []
+
+    def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
+        return self.keep(made_up(explanation, self.ratios.get(explanation, 9.0), NOMINAL))
+
+    def expand(self, seed: Fit) -> list[Fit]:
+        self.seeds.append(seed.explanation)
+        self.looked_at += 1
+        larger = (e for e in self.ratios if e.size == seed.explanation.size + 1)
+        return [self.add(explanation) for explanation in larger]
+
+    def refine(self, fits: object) -> None:
+        pass
+
+    def _fit_most_promising(self, seeds: object) -> None:
+        pass
+
+    def _fit_ripples(self, seeds: object) -> None:
+        pass
+
+
+ONES = [
+    Explanation((), (Variant(effect, ("x",)),)) for effect in ("sensor_lag", "supply_sag", "pwm_deadband", "backlash")
+]
+PAIRS = [Explanation(("spring_preload",), one.variants) for one in ONES]
+RATIOS = {NOTHING: 9.0, **dict(zip(ONES, (6.0, 6.1, 6.2, 6.3), strict=True)), PAIRS[0]: 2.0}
+
+
+@pytest.mark.parametrize("width", [1, 2, 3])
+def test_as_many_explanations_of_a_size_are_grown_as_the_beam_is_wide(short: Data, pool: Executor, width: int) -> None:
+    """Of four effects alone the best are grown; single drifts, of which there are none here, would be besides."""
+    found = Grown(short, pool, RATIOS, Beam(width=width, depth=2))
+    assert found.run().explanation == PAIRS[0]
+    assert [seed for seed in found.seeds if seed.size == 1] == ONES[:width]
+
+
+def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> None:
+    drifts = [Explanation((name,)) for name in ("spring_preload", "coulomb_friction", "armature_resistance")]
+    ratios = RATIOS | dict(zip(drifts, (7.0, 7.1, 7.2), strict=True))
+    found = Grown(short, pool, ratios, Beam(width=1, depth=2))
+    found.run()
+    assert [seed for seed in found.seeds if seed.size == 1] == [*drifts, ONES[0]]
+
+
+def test_a_budget_ends_the_growth_within_a_size(short: Data, pool: Executor) -> None:
+    found = Grown(short, pool, RATIOS, Beam(budget=2))
+    found.run()
+    assert found.exhausted
+    assert found.seeds == [NOTHING, ONES[0]]
+
+
+def test_what_accounts_for_all_is_not_grown(short: Data, pool: Executor) -> None:
+    found = Grown(short, pool, {NOTHING: 9.0, ONES[0]: 0.99}, Beam())
+    assert found.run().explanation == ONES[0]
+    assert found.seeds == [NOTHING]
+
+
+def test_the_better_fit_of_an_explanation_is_kept(empty: Search) -> None:
+    worse, better = (made_up(NOTHING, ratio, NOMINAL) for ratio in (1.5, 1.2))
+    for fit in (worse, better, worse):
+        empty.keep(fit)
+    assert empty.fits == {NOTHING: better}
+    assert empty.keep(worse) is better
+
+
+def test_of_each_size_the_best_comes_first(empty: Search) -> None:
+    fits = [
+        made_up(Explanation((name,)), ratio, NOMINAL)
+        for name, ratio in (("spring_preload", 1.4), ("coulomb_friction", 1.2))
+    ]
+    for fit in fits:
+        empty.keep(fit)
+    assert empty.of_size(1) == fits[::-1]
+    assert empty.best_of_size(1) is fits[1]
+    assert empty.best_of_size(2) is None
+
+
+@pytest.mark.parametrize(("above", "expected"), [(0.5 * TIED, ("spring_preload",)), (2.0 * TIED, ())])
+def test_of_explanations_that_fit_alike_a_drift_goes_before_an_effect(
+    empty: Search, above: float, expected: tuple[str, ...]
+) -> None:
+    empty.keep(made_up(NOTHING, 2.0, NOMINAL))
+    empty.keep(of_chi2(Explanation((), (LAG,)), 0.0, NOMINAL))
+    empty.keep(of_chi2(Explanation(("spring_preload",)), above, NOMINAL))
+    assert empty.preferred().explanation.drifted == expected
+
+
+def test_of_effects_that_fit_alike_that_with_fewer_numbers_is_preferred(empty: Search) -> None:
+    empty.keep(made_up(NOTHING, 2.0, NOMINAL))
+    empty.keep(of_chi2(Explanation((), (LOAD,)), 0.0, NOMINAL))
+    empty.keep(of_chi2(Explanation((), (VISCOUS,)), 0.5 * TIED, NOMINAL))
+    assert empty.preferred().explanation.effects == ("viscous_friction",)
+
+
+def test_a_drift_goes_before_a_change_in_the_middle(empty: Search) -> None:
+    empty.keep(made_up(NOTHING, 2.0, NOMINAL))
+    empty.keep(of_chi2(Explanation(changed="spring_preload"), 0.0, NOMINAL))
+    empty.keep(of_chi2(Explanation(("spring_preload",)), 0.5 * TIED, NOMINAL))
+    assert empty.preferred().explanation.drifted == ("spring_preload",)
+
+
+def test_a_seed_is_expanded_once(empty: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Explanation] = []
+
+    def screened(fit: Fit, *_: object) -> list[object]:
+        asked.append(fit.explanation)
+        return []
+
+    monkeypatch.setattr(module, "screened", screened)
+    seed = made_up(NOTHING, 2.0, NOMINAL)
+    assert empty.expand(seed) == empty.expand(replace(seed)) == []
+    assert asked == [NOTHING]

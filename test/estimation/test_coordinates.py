@@ -1,0 +1,80 @@
+"""The way between values and the coordinates of a search."""
+
+import numpy as np
+import pytest
+from support.recordings import NOMINAL, PIERBURG, data_on, recording
+
+from pierburg_ros.diagnosis.search.candidates import possible, starts_of
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.estimation.coordinates import Coordinates, in_order
+from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+
+STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
+VARIANTS = [
+    Variant(effect.id, variant.free, tuple(variant.fixed.items()))
+    for effect in possible(PIERBURG)
+    for variant in effect.variants
+]
+FRICTION = "coulomb_friction"
+BREAKAWAY = "static_friction.breakaway_torque"
+
+
+@pytest.fixture(scope="module")
+def starts() -> dict[Variant, list[Start]]:
+    """Where a search for each variant may start."""
+    return starts_of(data_on(recording({}, duration=5.0)), NOMINAL)
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.label + "-" + variant.free[0])
+def test_values_survive_the_way_through_coordinates(variant: Variant, starts: dict[Variant, list[Start]]) -> None:
+    names = tuple(f"{variant.effect}.{name}" for name in variant.free)
+    coordinates = Coordinates((FRICTION, *names), NOMINAL, 60.0)
+    for start in starts[variant]:
+        values = {f"{variant.effect}.{name}": value for name, value in start.items()}
+        values[FRICTION] = 0.18
+        if BREAKAWAY in values:
+            values[BREAKAWAY] += 0.18
+        assert coordinates.values(coordinates.point(values)) == pytest.approx(values)
+
+
+def test_a_positive_base_parameter_is_searched_by_its_ratio_to_the_nominal_one() -> None:
+    coordinates = Coordinates((FRICTION,), NOMINAL, 60.0)
+    assert coordinates.point({FRICTION: 0.2007}) == pytest.approx(0.0, abs=1e-12)
+    assert coordinates.point({FRICTION: 0.2007 * np.e / 2.0}) == pytest.approx(1.0 - np.log(2.0))
+
+
+def test_a_breakaway_torque_never_falls_below_the_sliding_friction() -> None:
+    coordinates = Coordinates((FRICTION, *Explanation((), (STICTION,)).names), NOMINAL, 60.0)
+    lower, upper = coordinates.bounds
+    for point in (lower, np.array([upper[0], *lower[1:]])):
+        values = coordinates.values(point)
+        assert values[BREAKAWAY] >= values[FRICTION]
+
+
+def test_a_pair_out_of_order_is_put_in_order_and_others_stay() -> None:
+    values = {FRICTION: 0.3, BREAKAWAY: 0.25, "spring_preload": 0.2}
+    assert in_order(values, NOMINAL) == {**values, BREAKAWAY: 0.3}
+    absent = {FRICTION: 0.3, BREAKAWAY: 0.0}
+    assert in_order(absent, NOMINAL) == absent
+
+
+def test_a_change_has_a_value_before_one_after_and_a_time() -> None:
+    changed = "armature_resistance"
+    coordinates = Coordinates(Explanation(changed=changed).names, NOMINAL, 60.0)
+    values = {changed: 4.2, changed + AFTER: 5.0, changed + WHEN: 20.0}
+    assert coordinates.values(coordinates.point(values)) == pytest.approx(values)
+    assert np.all(coordinates.steps > 0)
+
+
+def test_a_change_of_which_nothing_is_known_is_none_half_way() -> None:
+    changed = "armature_resistance"
+    coordinates = Coordinates(Explanation(changed=changed).names, NOMINAL, 60.0)
+    values = {changed: 4.2, changed + AFTER: 4.2, changed + WHEN: 30.0}
+    assert coordinates.values(coordinates.point({changed: 4.2})) == pytest.approx(values)
+
+
+def test_values_out_of_reach_are_brought_within_bounds() -> None:
+    """A base parameter is searched within a factor of six of its nominal value, either way."""
+    coordinates = Coordinates((FRICTION,), NOMINAL, 60.0)
+    for value, nearest in ((1e-6, 0.2007 / 6.0), (100.0, 0.2007 * 6.0), (0.25, 0.25)):
+        assert coordinates.within({FRICTION: value})[FRICTION] == pytest.approx(nearest)

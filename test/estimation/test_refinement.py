@@ -1,0 +1,31 @@
+"""A second look finds the values that a descent over a rough cost has missed."""
+
+import pytest
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.refinement import refined
+
+STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))
+
+
+def test_reaches_the_noise_where_a_descent_stops_early() -> None:
+    truth = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}
+    estimator = Estimator(data_on(recording(truth)), NOMINAL)
+    start = {"static_friction.breakaway_torque": 0.25, "static_friction.stribeck_velocity": 0.12}
+    stopped = estimator.fit(STICTION, start)
+    found = refined(estimator, stopped)
+    assert stopped.ratio > 2.0
+    assert found.ratio < 1.03
+    assert found.values["static_friction.breakaway_torque"] == pytest.approx(0.27, rel=0.03)
+
+
+def test_never_makes_a_fit_worse() -> None:
+    """Where a descent has ended in the minimum of a smooth cost, nothing is left to find."""
+    estimator = Estimator(data_on(recording({"spring_preload": 0.3}, duration=6.0)), NOMINAL)
+    fit = estimator.fit(Explanation(("spring_preload", "coulomb_friction")))
+    again = refined(estimator, fit)
+    assert again.refined and not fit.refined
+    assert again.chi2 <= fit.chi2
+    assert again.values["spring_preload"] == pytest.approx(0.3, rel=0.002)
