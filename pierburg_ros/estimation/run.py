@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import InitialState, first_standstill, from_standstill
+from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_standstill, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
@@ -79,17 +79,17 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-FEWEST = 100
-"""Samples without which a piece of a recording is left out: twice what tells where the shaft stands."""
-
-
 def runs_of(recording: Recording, model: Model, number: int = 0) -> tuple[list[Run], Pieces]:
-    """The pieces of `recording` with a known input, the `number`th of all, and how it was cut."""
+    """The pieces of `recording` with a known input, the `number`th of all, and how it was cut.
+
+    A piece has at least twice the samples that tell where the shaft stands.
+    """
+    fewest = 2 * EVEN
     found = pieces(from_standstill(recording, model), model)
-    runs = [run_of(part, model, number) for part in _from_standstills(found.parts) if part.time.size >= FEWEST]
+    runs = [run_of(part, model, number) for part in _from_standstills(found.parts) if part.time.size >= fewest]
     if not runs:
         raise InputError(
-            f"{recording.name} has no stretch of {FEWEST} samples with a known duty that begins at a standstill"
+            f"{recording.name} has no stretch of {fewest} samples with a known duty that begins at a standstill"
             " (messages are missing). Record again with fewer processes beside."
         )
     return runs, found

@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
 from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
-from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
 from pierburg_ros.estimation.refinement import refined
@@ -21,8 +21,17 @@ from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
 
-GLANCE = 24.0
-"""How much of a recording [s] a first look takes in."""
+GLANCE = 2 * CYCLE * BLOCK
+"""How much of a recording [s] a first look takes in. Derived: two cycles of eight blocks, so that every kind of block
+is there twice."""
+NEARLY = 5.0
+"""Training error over noise up to which the best explanation may only have stopped too early. Chosen: descents to true
+explanations were seen to stop at 1.25 to 16 times the noise (n = 2 trials); not varied."""
+REFINED = 2
+"""How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
+COMPARABLE = 1.5
+"""Training error over that of the best explanation of its size up to which a fit is refined. Work: each refinement
+costs up to 18 descents; not varied."""
 
 
 @dataclass(frozen=True)
@@ -226,14 +235,6 @@ class Search:
             if kept.explanation.size >= best.explanation.size:
                 return kept
             best = kept
-
-
-NEARLY = 5.0
-"""Training error over noise up to which the best explanation may only have stopped too early."""
-REFINED = 2
-"""How many fits of one size are refined in one go."""
-COMPARABLE = 1.5
-"""Training error over that of the best explanation of its size up to which a fit is refined."""
 
 
 def _near(fit: Fit, best: Fit) -> bool:
