@@ -47,7 +47,7 @@ def windows(
 
 
 def _useful_length(held: Signal, binned: Signal, least: int) -> int:
-    """How many bins are worth choosing; `held` is the energy that the best windows of each total length hold."""
+    """How many bins are worth taking; `held` is the energy that the best windows of each total length hold."""
     blocks = np.add.reduceat(binned, np.arange(0, binned.size, least))
     reachable = np.cumsum(np.sort(blocks)[::-1])
     lengths = np.arange(held.size)

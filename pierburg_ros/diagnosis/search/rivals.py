@@ -54,12 +54,12 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
         effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
         stage = Explanation(explanation.drifted, effects, explanation.changed)
         try:
-            look = search.glance.fit(stage, values, ROUNDS)
+            stage_fit = search.first_part.fit(stage, values, ROUNDS)
         except InputError:
             continue
-        if look.ratio > NEAR * best.ratio:
+        if stage_fit.ratio > NEAR * best.ratio:
             return
-        values = look.values
+        values = stage_fit.values
     search.add(explanation, search.add(explanation, values).values)
 
 

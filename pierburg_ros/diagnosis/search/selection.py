@@ -18,7 +18,7 @@ FORMULATION = 1.15e-4
 Hall voltage, the most that steps of 5 us in place of 10 change in the textbook form, over all effects; trials differ by
 0.005 to 0.2 mV from the simulator (`docs/proof.md`)."""
 PROMISING = 15.0
-"""Gain in chi2 that a first look must promise on top of an adequate explanation to be followed up. Measured: in n = 13
+"""Gain in chi2 that a first fit must promise on top of an adequate explanation to be followed up. Measured: in n = 13
 recordings without an effect, drifted ones included, none gained as much."""
 ADEQUATE = 1.03
 """Training error over noise up to which an explanation accounts for all there is. Measured: over white noise the ratio

@@ -95,7 +95,7 @@ def discriminate(
     for index in range(SEGMENTS):
         best = max(((*best[:index], tried, *best[index + 1 :]) for tried in segments), key=estimate)
     finalists = sorted(judged, key=lambda chosen: -judged[chosen])[:FINALISTS]
-    report(f"judging {len(finalists)} sequences by full fits")
+    report(f"comparing {len(finalists)} sequences by full fits")
     designs = [judge(first, second, time, _sequence(chosen, first, time, limit), chosen, noise) for chosen in finalists]
     return max(designs, key=lambda design: design.separation)
 
