@@ -59,6 +59,7 @@ benchmarks: $(STAMP)
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,benchmarks]'
 	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fuzzy.py
+	$(BIN)/python benchmarks/least_squares.py
 	$(BIN)/python benchmarks/pacing.py
 	$(BIN)/python benchmarks/graph.py
 

@@ -21,9 +21,9 @@ from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.proof import document, run
-from pierburg_ros.proof.docket import DIAGNOSE
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import planned
+from pierburg_ros.proof.trial_run import DIAGNOSE
 
 
 def prove(

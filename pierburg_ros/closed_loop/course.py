@@ -74,7 +74,7 @@ class Course:
         return np.array([np.repeat([step.before, step.start, step.target], samples) for step in STEPS])
 
     def metrics(self, run: Run) -> list[Metrics]:
-        """The response to each step, from the laps of a run over these setpoints."""
+        """The response to each step, from a run over each row of these setpoints."""
         period = float(run.time[1])
         first = round(self.approach / period) + round(self.hold / period)
         return [

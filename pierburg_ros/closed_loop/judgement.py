@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.designs import Design
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal, settling_bounds
-from pierburg_ros.closed_loop.loop import simulate_laps
+from pierburg_ros.closed_loop.loop import simulate_runs
 from pierburg_ros.closed_loop.metrics import Metrics
 from pierburg_ros.closed_loop.plants import NOMINAL
 from pierburg_ros.closed_loop.tune import NOISE, RATE
@@ -74,5 +74,5 @@ def judge(
 def respond(design: Design, settings: Settings, model: Model, seed: int) -> Table:
     """Metrics of every step of one run, shape (steps, metrics)."""
     course = Course()
-    run = simulate_laps(model, settings, course.setpoints(RATE), RATE, NOISE, seed, control=design.control)
+    run = simulate_runs(model, settings, course.setpoints(RATE), RATE, NOISE, seed, control=design.control)
     return np.array([astuple(metrics) for metrics in course.metrics(run)])

@@ -27,7 +27,7 @@ TICK = [(name, np.float64) for name in ("setpoint", "noise", "hall_voltage", "du
 
 @dataclass(frozen=True)
 class Run:
-    """A simulated closed loop: `time` of shape (samples,), the rest too, or (laps, samples) for several laps."""
+    """A simulated closed loop: `time` of shape (samples,), the rest too, or (runs, samples) for several runs."""
 
     time: Signal  # [s]
     setpoint: Signal  # [rad]
@@ -53,11 +53,11 @@ def simulate_loop(
     PIFLC, or `linear` for a plain PI or PID.
     """
     time = np.arange(round(duration * rate) + 1) / rate
-    laps = simulate_laps(model, settings, schedule.sampled(time)[np.newaxis], rate, noise, seed, initial_angle, control)
-    return Run(time, laps.setpoint[0], laps.hall_voltage[0], laps.duty[0], laps.angle[0])
+    runs = simulate_runs(model, settings, schedule.sampled(time)[np.newaxis], rate, noise, seed, initial_angle, control)
+    return Run(time, runs.setpoint[0], runs.hall_voltage[0], runs.duty[0], runs.angle[0])
 
 
-def simulate_laps(
+def simulate_runs(
     model: Model,
     settings: Settings,
     setpoint: Signal,
@@ -67,7 +67,7 @@ def simulate_laps(
     initial_angle: float = 0.0,
     control: ModuleType = law,
 ) -> Run:
-    """Closed loops one after the other, one for each row of `setpoint` [rad], shape (laps, samples).
+    """Closed loops one after the other, one for each row of `setpoint` [rad], shape (runs, samples).
 
     Each starts anew, shaft and controller; see `simulate_loop`.
     """
@@ -84,30 +84,30 @@ def simulate_laps(
     close = close_linear if control is linear else close_piflc
     close(record[0], plants, settings.record(), law.new_state(), ticks, 1.0 / rate)
     time = np.arange(setpoint.shape[1]) / rate
-    for lap in ticks["angle"]:
-        refuse_unsimulated(model, lap, time)
+    for angle in ticks["angle"]:
+        refuse_unsimulated(model, angle, time)
     return Run(time, **{name: ticks[name].copy() for name in ("setpoint", "hall_voltage", "duty", "angle")})
 
 
 @kernel
-def close_piflc(parameters: Any, plants: Any, settings: Any, state: Any, laps: Any, period: float) -> None:
-    """Run the PIFLC against the plant through the ticks of each lap, `period` [s] apart."""
-    for number in range(laps.shape[0]):
+def close_piflc(parameters: Any, plants: Any, settings: Any, state: Any, runs: Any, period: float) -> None:
+    """Run the PIFLC against the plant through the ticks of each run, `period` [s] apart."""
+    for number in range(runs.shape[0]):
         plant = plants[number]
         law.forget(state)
-        for tick in laps[number]:
+        for tick in runs[number]:
             sample(parameters, plant, state, tick)
             law.step(settings, state, tick.setpoint, tick.hall_voltage, period)
             advance(parameters, plant, tick.duty, np.nan, True, period)
 
 
 @kernel
-def close_linear(parameters: Any, plants: Any, settings: Any, state: Any, laps: Any, period: float) -> None:
+def close_linear(parameters: Any, plants: Any, settings: Any, state: Any, runs: Any, period: float) -> None:
     """Run a PI or PID instead (a kernel that took the law as an argument could not be cached on disk)."""
-    for number in range(laps.shape[0]):
+    for number in range(runs.shape[0]):
         plant = plants[number]
         law.forget(state)
-        for tick in laps[number]:
+        for tick in runs[number]:
             sample(parameters, plant, state, tick)
             linear.step(settings, state, tick.setpoint, tick.hall_voltage, period)
             advance(parameters, plant, tick.duty, np.nan, True, period)

@@ -12,7 +12,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.closed_loop.course import STEPS, Course
 from pierburg_ros.closed_loop.designs import Design
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal, Table, settling_bounds, values
-from pierburg_ros.closed_loop.loop import simulate_laps
+from pierburg_ros.closed_loop.loop import simulate_runs
 from pierburg_ros.closed_loop.plants import HOT, NOMINAL, STICKY
 from pierburg_ros.closed_loop.search import search
 from pierburg_ros.control import Settings
@@ -62,7 +62,7 @@ class Task:
         """What the goal limits, for each step, shape (steps, 4); infinite where the plant breaks down."""
         model, control = self.plants[name], self.design.control
         try:
-            run = simulate_laps(model, settings, course.setpoints(RATE), RATE, NOISE, seed, control=control)
+            run = simulate_runs(model, settings, course.setpoints(RATE), RATE, NOISE, seed, control=control)
         except InputError:
             return np.full((len(STEPS), len(QUANTITIES)), np.inf)
         return values(course.metrics(run))

@@ -15,9 +15,11 @@ from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
 
 DRIFT = math.log(6.0)
-"""A base parameter is searched within this factor (logarithm) of its nominal value, either way."""
+"""A base parameter is searched within this factor (logarithm) of its nominal value, either way. Chosen: the paper's
+own change of R is a factor of 1.42, and a bound should not be met; not varied."""
 WIDTH = 20.0
-"""An effect's parameter is searched up to so many times what is plausible."""
+"""An effect's parameter is searched up to so many times what is plausible. Chosen: a bound that no fit should meet;
+not varied."""
 ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
 """Parameters that are counted from a base parameter, by dotted name."""
 BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}

@@ -10,7 +10,8 @@ from scipy import stats
 from pierburg_ros.arrays import Flags, Signal
 
 RANK = 1e-5
-"""Singular values below this share of the largest are differences of rounding, not information."""
+"""Singular values below this share of the largest are differences of rounding, not information. Derived: central
+differences of 1e-5 are wrong by about 1e-10, far below. Between the two it was not varied."""
 
 
 @dataclass(frozen=True)

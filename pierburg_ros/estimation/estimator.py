@@ -12,15 +12,14 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
-from pierburg_ros.estimation.least_squares import Map, Solution, jacobian, minimise
+from pierburg_ros.estimation.least_squares import FULL, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
-FULL = 25
-"""Iterations after which a descent ends that still gains."""
 FORGIVEN = 3.0
-"""Errors beyond so many noises count by their logarithm where a fit forgives."""
+"""Errors beyond so many noises count by their logarithm where a fit forgives. Derived: of white noise only 0.27 % lies
+beyond."""
 
 
 @dataclass(frozen=True)

@@ -13,24 +13,33 @@ from pierburg_ros.plant.decode import decoded, sensitivity
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-LONGEST = 250
-"""Most samples at the start of a recording that say where the shaft stood."""
 EVEN = 50
-"""Samples that, where they lie on a line, tell the angle to a third of the noise, and how fast the shaft creeps."""
+"""Samples that, where they lie on a line, say where it begins and how fast the shaft creeps. Derived: the beginning of
+a line through 50 samples is known to 2 / sqrt(50) = 0.28 of the noise."""
+LONGEST = 5 * EVEN
+"""Most samples at the start of a recording that say where the shaft stood. Derived: their mean is known to a sixteenth
+of the noise, below what any later sample shows."""
 FEWEST = 10
-"""A shaft that keeps its place for so many samples stands still, though it sets off then."""
+"""A shaft that keeps its place for so many samples stands still, though it sets off then. Derived: their mean is known
+to a third of the noise."""
 SHORTEST = 8
-"""Samples through which a line goes where the shaft moves at once."""
+"""Samples through which a line goes where the shaft moves at once. Chosen: more would bend, fewer say nothing; not
+varied."""
 LATEST = 0.25
-"""Share of a recording within which a standstill has to come for the simulation to start there."""
+"""Share of a recording within which a standstill has to come for the simulation to start there. Chosen: three quarters
+of a recording stay; not varied."""
 SLOW = 10.0
-"""Span of the samples of a standstill, in units of the noise: creeping is allowed."""
+"""Span of the samples of a standstill, in units of the noise: creeping is allowed. Derived: 50 samples of white noise
+alone span 4.5 on average; the rest is room to creep."""
 BRISK = 40.0
-"""Span up to which a line at the start tells the velocity well enough, in units of the noise."""
+"""Span up to which a line at the start tells the velocity well enough, in units of the noise. Measured: with these
+rules 508 of n = 522 beginnings within three synthetic recordings leave at most 1.06 times the noise."""
 CERTAIN = 4.0
-"""So many standard deviations of its own noise make a slope or a bend certain."""
+"""So many standard deviations of its own noise make a slope or a bend certain. Measured: white noise bends so far in
+22 of n = 449,020 windows (6e-5 expected) and slopes so far in none of 1,000."""
 ROUNDING = 1e-12
-"""What counts as no difference where there is no noise, in the measured unit."""
+"""What counts as no difference where there is no noise, in the measured unit. Derived: the mean of 250 samples of 5 V
+is rounded by less than 250 x 5 x 1.1e-16 = 1.4e-13."""
 
 
 @dataclass(frozen=True)

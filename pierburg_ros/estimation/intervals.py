@@ -13,23 +13,22 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.slopes import sharp
+from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.estimation.slopes import FINE, sharp
 
 SURE = 1.96
-"""Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends."""
+"""Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends. Derived: the 97.5 %
+quantile of the normal distribution."""
 DOUBLINGS = 7
-"""How often the reach of an interval is doubled at most: 128 times what the curvature says."""
-DENTED = 12.0
-"""Rise of chi2 allowed where events jump: the best of many local minima is lower than the true one by luck."""
+"""How often the reach of an interval is doubled at most: 128 times what the curvature says. Work: each costs up to
+three brief descents; an interval that wide is not identifiable anyway."""
 PATIENCE = 3
-"""How many reaches without success end the search where events jump: a fit may have ended in a local minimum."""
-FIRST = 1e-5
-"""Share of its range by which a quantity without a slope is moved first."""
-BRIEF = 6
-"""Iterations in which the other quantities are fitted again: as many as a parabola-shaped valley takes, whose bend is
-as long as the first reach. A fit that stands still ends sooner."""
+"""How many reaches without success end the search where events jump. Work: a descent may have ended in a local
+minimum, so one failure is no end; each costs up to three brief descents."""
 HALF_KNOWN = 0.5
-"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable."""
+"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: a value
+known to no better than a half is none to act on; a convention of the report."""
 
 Map = Callable[..., Iterable[Any]]
 
@@ -70,7 +69,7 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
     known = covariance(estimator, fit)[0]
     reach = known.factor * np.sqrt(np.maximum(np.diagonal(known.matrix), 0.0))
     jumps = any(EFFECT[effect].jumps for effect in fit.explanation.effects)
-    limit = fit.chi2 + (DENTED if jumps else SURE**2) * fit.spread
+    limit = fit.chi2 + (TIED if jumps else SURE**2) * fit.spread
     coordinates = estimator.coordinates(fit.explanation)
     sides = [
         (place, side * (_plateau(estimator, fit, place, side, limit) if unknown else float(reach[place])))
@@ -96,7 +95,7 @@ def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: flo
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = (float(bound[place]) for bound in coordinates.bounds)
-    reach = FIRST * (upper - lower)
+    reach = FINE * (upper - lower)  # where the slope was taken
     while reach < upper - lower:
         point = fit.solution.point.copy()
         point[place] = np.clip(point[place] + side * reach, lower, upper)

@@ -13,8 +13,15 @@ from pierburg_ros.arrays import Flags, Signal
 Residual = Callable[[Signal], Signal]
 Map = Callable[..., Iterable[Signal]]
 
+FULL = 25
+"""Iterations after which a descent ends that still gains. Work: 68 descents of an effect to a trial took 18
+simulations each on average, slopes but the last included, so few come near it (`docs/benchmarks.md`)."""
+BRIEF = 8
+"""Iterations of a descent that is one of several to choose from; half as many where it starts beside its end. Work: a
+descent that is worth more is carried on; not varied."""
 REJECTED = 6
-"""Steps that may fail to lower the cost before a descent ends: the damping has then grown by 1e10."""
+"""Steps that may fail to lower the cost before a descent ends. Derived: the damping has then grown by 8 x 16 x ... x
+256, almost 1e10, and the step shrunk as much."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ def minimise(
     lower: Signal,
     upper: Signal,
     step: Signal,
-    iterations: int = 25,
+    iterations: int = FULL,
     tolerance: float = 1e-4,
     over: Map = map,
 ) -> Solution:

@@ -10,9 +10,19 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED, STEP
 
 COARSE = 3.0
-"""Steps of so many standard deviations of the noise before rounding decide what is measured."""
+"""Steps of so many standard deviations of the noise before rounding decide what is measured. Derived: the error of
+such a step, 3 / sqrt(12) = 0.87 of the noise, is as large as the noise."""
 OFF_GRID = 0.02
-"""Distance from the grid, in steps, that rounding of the file format may cause."""
+"""Distance from the grid, in steps, that rounding of the file format may cause. Derived: values off any grid come as
+near with 4 % each, so n distinct ones by chance with 0.04^n; float32 at 5 V and 1 mV steps needs 0.0005."""
+TIED = 12.0
+"""Difference of chi2, in effective samples, below which two explanations, or two points of a cost with many local
+minima, are not told apart. Chosen: above the 3.84 of one smooth quantity, since the best of many local minima is lower
+than the true one by luck; how much was not derived, nor other values tried."""
+EXPLAINED = 1.1
+"""An error below this multiple of the noise, or of another error, is not told from it. Measured: the noise estimate is
+3 to 7 % low in 3 of n = 94 recordings, and the validation error of 80 blind trials without an effect is at most 2 %
+above the training error."""
 
 
 def coarse_step(measured: Sequence[Signal], noise: float) -> float:

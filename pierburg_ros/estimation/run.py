@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import InitialState, first_standstill, from_standstill
+from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_standstill, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
@@ -79,20 +79,18 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-FEWEST = 100
-"""Samples without which a piece of a recording is left out: twice what tells where the shaft stands."""
-
-
 def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Pieces]:
     """The parts of `recording` that can be simulated, each from a standstill, and how it was cut.
 
-    One part where nothing is missing. InputError where none can be simulated.
+    One part where nothing is missing; of more, each has at least twice the samples that tell where the shaft stands.
+    InputError where none can be simulated.
     """
+    fewest = 2 * EVEN
     cut = pieces(from_standstill(recording, model), model)
-    parts = [part for part in _from_standstills(cut.parts) if part.time.size >= FEWEST or len(cut.parts) == 1]
+    parts = [part for part in _from_standstills(cut.parts) if part.time.size >= fewest or len(cut.parts) == 1]
     if not parts:
         raise InputError(
-            f"{recording.name} has no stretch of {FEWEST} samples with a known duty that begins at a standstill"
+            f"{recording.name} has no stretch of {fewest} samples with a known duty that begins at a standstill"
             " (messages are missing). Record again with fewer processes beside."
         )
     return parts, cut

@@ -9,15 +9,20 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 
 FINE = 1e-5
-"""Difference step: a covariance needs the slope within its own interval."""
+"""Difference step of a covariance, in the coordinates of the search. Derived: within the interval of any value known
+to 0.01 %, and wrong by rounding by about 1e-11 of the residual."""
 FINEST = 1e-7
-"""Difference step where a bend lies within the fine one; the stiffer effects are too noisy for it."""
+"""Difference step where a bend lies within the fine one. Chosen: a hundredth of it; simulations of the stiffer effects
+are too noisy to begin with it. Not varied."""
 SMOOTH = 1e-4
-"""Largest relative difference of the slopes ahead and behind where the residual is smooth."""
+"""Largest relative difference of the slopes ahead and behind where the residual is smooth. Derived: ten times the step
+`FINE`, which a curvature of order ten makes."""
 WEAK = 0.05
-"""A coordinate that its own slope tells no better than this may still be told by jumps."""
+"""A coordinate that its own slope tells no better than this may still be told by jumps. Chosen: 5 % of a parameter,
+above what identification calls known; not varied."""
 JUMPS = (1e-4, 1e-3, 5e-3)
-"""Steps tried, finest first, for a quantity that acts in jumps."""
+"""Steps tried, finest first, for a quantity that acts in jumps. Chosen: its interval is then at least as wide as the
+first that sees a jump, 0.01 %; not varied."""
 
 Residual = Callable[[Signal], Signal]
 Bounds = tuple[Signal, Signal]

@@ -15,22 +15,23 @@ from pierburg_ros.estimation.data import data_of, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import covariance
+from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.refinement import COARSEST, refined
 from pierburg_ros.estimation.slopes import FINE
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 from pierburg_ros.workers import workers
 
-GOOD = 1.1
-"""A fit whose RMSE is below this multiple of the noise needs no second start."""
 ITERATIONS = 30
-"""Iterations after which a descent ends that still gains."""
-COARSE_TOLERANCE = 1e-3
-"""Relative change of the cost at which wide differences have done their part."""
-ROUGH = 1e-3
-"""Share of the cost that one more linear step promises and did not deliver: the cost is rough there."""
+"""Iterations after which a descent ends that still gains. Work: it bounds a fit that goes on for the sake of a
+tolerance of 1e-7; not varied."""
+NOTICEABLE = 1e-3
+"""Share of the cost below which a gain no longer counts: wide differences have done their part, or the cost is rough
+where one more linear step promises more. Derived: in 30,000 samples chance alone changes the cost by 0.8 %, one
+parameter by 3e-5."""
 SPREAD = 0.4
-"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter."""
+"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter. Chosen: about what a parameter
+of another specimen may differ by; not varied."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,7 @@ def _fitted(
 ) -> Identified:
     best = _descend(estimator, estimator.at(explanation), tolerance, refine)
     for start in _further_starts(estimator, explanation, starts - 1, seed):
-        if best.ratio <= GOOD:
+        if best.ratio <= EXPLAINED:
             break
         best = min(best, _descend(estimator, start, tolerance, refine), key=lambda fit: fit.chi2)
     known, slopes = covariance(estimator, best)
@@ -147,7 +148,7 @@ def _descend(estimator: Estimator, start: Fit, tolerance: float, refine: bool) -
     def descended(fit: Fit, steps: Signal, until: float) -> Fit:
         return estimator.fit(fit.explanation, fit.values, ITERATIONS, steps=steps, tolerance=until)
 
-    found = descended(descended(start, wide, max(tolerance, COARSE_TOLERANCE)), fine, tolerance)
+    found = descended(descended(start, wide, max(tolerance, NOTICEABLE)), fine, tolerance)
     if refine and _is_rough(found, *coordinates.bounds):
         found = descended(refined(estimator, found), fine, tolerance)
     return found
@@ -160,7 +161,7 @@ def _is_rough(fit: Fit, lower: Signal, upper: Signal) -> bool:
     if not inside.any():
         return False
     change = np.linalg.lstsq(slopes[:, inside], residual, rcond=RANK)[0]
-    return bool(np.sum((slopes[:, inside] @ change) ** 2) > ROUGH * fit.chi2)
+    return bool(np.sum((slopes[:, inside] @ change) ** 2) > NOTICEABLE * fit.chi2)
 
 
 def _further_starts(estimator: Estimator, explanation: Explanation, count: int, seed: int) -> list[Fit]:

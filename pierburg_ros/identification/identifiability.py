@@ -12,14 +12,17 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.intervals import SURE
 from pierburg_ros.estimation.slopes import sharp
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.recording.recording import Recording
 
 KNOWN = 0.1
-"""A parameter counts as identifiable when its 95 % half-width is below a tenth of it."""
+"""A parameter counts as identifiable when its 95 % half-width is below this share of it. Given: a convention of the
+report, a tenth."""
 MOST_PARTNERS = 4
-"""Largest number of parameters looked for as those that together imitate another."""
+"""Largest number of parameters looked for as those that together imitate another. Work: all combinations are tried;
+the valve's motion has four numbers, so four imitate any."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +71,11 @@ class _Trace:
         own = self.jacobian[:, self.names.index(name)]
         others = [other for other in self.free if other != name]
         left, _ = self._left_over(own, others)
-        width = 1.96 * self.noise / left if left > 1e-9 else None
+        width = SURE * self.noise / left if left > 1e-9 else None
         if width is not None and width < KNOWN:
             return Finding(True, width, {}, f"known to {_percent(width)} (95 %).")
         alone = float(np.linalg.norm(own))
-        if 1.96 * self.noise > KNOWN * alone:
+        if SURE * self.noise > KNOWN * alone:
             return Finding(False, width, {}, self._no_trace(own))
         partners, changes = self._imitation(own, others)
         imitation = dict(zip(partners, changes, strict=True))
@@ -92,7 +95,7 @@ class _Trace:
         for size in range(1, min(MOST_PARTNERS, len(others)) + 1):
             tried = [(*self._left_over(own, group), group) for group in combinations(others, size)]
             left, changes, group = min(tried, key=lambda row: row[0])
-            if 1.96 * self.noise > KNOWN * left:
+            if SURE * self.noise > KNOWN * left:
                 return group, changes
         return tuple(others), self._left_over(own, others)[1]
 

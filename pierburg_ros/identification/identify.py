@@ -26,7 +26,7 @@ from pierburg_ros.recording.noise import noise_of
 HELD = ("supply_voltage", "spring_stiffness", "gravity_torque")
 """Held unless freed: the supply can be measured, and duty and angle leave the scale of all torques open."""
 TRAINED_SHARE = 0.7
-"""Share of a single recording that the validated fit sees."""
+"""Share of a single recording that the validated fit sees. Given: the usual split, 70 to 30."""
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def headline(run: Run) -> dict[str, Share]:
         "of these, open loop": tally.share(one, lambda r: None if r["closed_loop"] else r["right"]),
         "of these, closed loop": tally.share(one, lambda r: r["right"] if r["closed_loop"] else None),
         "wrong, but the truth is reported as an equal explanation": tally.share(one, lambda r: r["tied"]),
-        "Rightly named: every value owed within 15 %": tally.share(results, tally.values_right),
+        "Rightly named: every value expected within 15 %": tally.share(results, tally.values_right),
         "Rightly named: windows hold 80 % of what they could": tally.share(results, tally.windows_right),
         "Rightly named: unseen data within 1.1 of the noise": tally.share(results, tally.unseen_right),
         "Two effects: verdict and both names": tally.share(kind(results, "two"), lambda r: r["right"]),

@@ -14,10 +14,10 @@ from typing import Any
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.processes import end_with_parent
-from pierburg_ros.proof.docket import DIAGNOSE, conduct, prepare, result, source_version
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import Plan
 from pierburg_ros.proof.trial import Trial
+from pierburg_ros.proof.trial_run import DIAGNOSE, conduct, prepare, result, source_version
 
 RUN = "run.json"
 Report = Callable[[int, int, dict[str, Any] | NotRecorded | None], None]

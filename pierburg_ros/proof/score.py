@@ -38,14 +38,14 @@ class Value:
         return abs(self.found - self.true) / abs(self.true) if self.true else abs(self.found)
 
     @property
-    def owed(self) -> bool:
+    def expected(self) -> bool:
         """Whether the recording holds enough to ask for the value."""
         return self.bound is not None and self.bound < BOUND_TOLERANCE
 
     @property
     def right(self) -> bool:
         """Whether the value is good enough, or cannot be asked for."""
-        return not self.owed or self.error <= VALUE_TOLERANCE
+        return not self.expected or self.error <= VALUE_TOLERANCE
 
     @property
     def covered(self) -> bool | None:
@@ -121,8 +121,8 @@ def named_rightly(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], shown:
         exact = diagnosis["verdict"] == "unexplained"
     else:
         concealed = {effect["id"] for effect in truth["effects"]}
-        owed = concealed.difference(truth["visibility"].get("faint", ()))
-        exact = diagnosis["verdict"] == truth["verdict"] and owed <= named <= concealed
+        expected = concealed.difference(truth["visibility"].get("faint", ()))
+        exact = diagnosis["verdict"] == truth["verdict"] and expected <= named <= concealed
     silent = diagnosis["verdict"] in ("consistent", "parameter_drift") and not named
     has_effect = truth["verdict"] in ("missing_physics", "unexplained")
     return (exact and ties_reported(truth, diagnosis)) or (has_effect and not shown and silent)

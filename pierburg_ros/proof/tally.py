@@ -47,8 +47,8 @@ def unseen_right(result: Result) -> bool | None:
 
 def values_right(result: Result) -> bool | None:
     """Whether all values that the recording owes are right; None where it owes none."""
-    owed = [v for v in result["values"] if v["bound"] is not None and v["bound"] < 0.05]
-    return bool(result["values_right"]) if owed and result["right"] else None
+    expected = [v for v in result["values"] if v["bound"] is not None and v["bound"] < 0.05]
+    return bool(result["values_right"]) if expected and result["right"] else None
 
 
 def answered(result: Result) -> str:

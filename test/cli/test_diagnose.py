@@ -109,7 +109,7 @@ def test_without_movement_nothing_is_claimed(tmp_path: Path) -> None:
 
 
 def test_a_worn_valve_under_the_controller_lacks_stiction_and_nothing_else(tmp_path: Path) -> None:
-    """The walk of the README: few jumps, so that a fit stops in a dent, where a ripple would seem to help."""
+    """The walk of the README: few jumps, so that a fit stops in a local minimum, where a ripple would seem to help."""
     sources = ["--model", str(EXAMPLES / "worn_valve.yaml"), "--setpoints", str(EXAMPLES / "setpoints.csv")]
     with pytest.raises(SystemExit):
         main(["simulate", *sources, "--noise", "0.003", "--output", str(tmp_path / "walk")])

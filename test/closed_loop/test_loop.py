@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.closed_loop import simulate_laps, simulate_loop
+from pierburg_ros.closed_loop import simulate_loop, simulate_runs
 from pierburg_ros.control import Controller, Schedule, Settings, linear
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model, Plant
@@ -41,13 +41,13 @@ def test_a_setpoint_shows_in_the_duty_one_sample_later(nominal):
     assert run.angle[changed + 2] > 0.0
 
 
-def test_laps_are_runs_of_their_own(nominal):
+def test_runs_one_after_the_other_are_independent(nominal):
     setpoint = np.array([np.full(200, 0.8), np.full(200, 0.3)])
-    laps = simulate_laps(nominal, Settings(), setpoint)
-    for lap, wanted in enumerate((0.8, 0.3)):
+    runs = simulate_runs(nominal, Settings(), setpoint)
+    for number, wanted in enumerate((0.8, 0.3)):
         alone = simulate_loop(nominal, Settings(), Schedule(np.array([0.0]), np.array([wanted])), 199 / 500)
-        np.testing.assert_array_equal(laps.angle[lap], alone.angle)
-        np.testing.assert_array_equal(laps.duty[lap], alone.duty)
+        np.testing.assert_array_equal(runs.angle[number], alone.angle)
+        np.testing.assert_array_equal(runs.duty[number], alone.duty)
 
 
 def test_reaches_the_setpoint(nominal):

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from pierburg_ros.signals import Signal
 from support.recordings import NOMINAL
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pierburg_ros.signals import Signal
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.slopes import JUMPS, central, sharp
 
 TIME = np.linspace(0.0, 3.0, 200)

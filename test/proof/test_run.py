@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.proof import docket, document, plan, run
+from pierburg_ros.proof import document, plan, run, trial_run
 from pierburg_ros.proof.concealment import draw
 from pierburg_ros.proof.graph import NotRecorded
 
@@ -66,18 +66,18 @@ def test_a_diagnosis_that_fails_is_a_failed_trial(tmp_path, asked, short, monkey
 def test_results_of_other_sources_do_not_count(tmp_path, asked, short):
     prove(tmp_path / "run", {"consistent": 1})
     folder = tmp_path / "run" / "trials" / "consistent-000"
-    assert docket.result(folder, "these") is not None
-    assert docket.result(folder, "others") is None
+    assert trial_run.result(folder, "these") is not None
+    assert trial_run.result(folder, "others") is None
 
 
 def test_the_version_follows_the_sources_of_the_diagnosis_only(tmp_path):
     for part in ("diagnosis", "nodes"):
         (tmp_path / part).mkdir()
         (tmp_path / part / "a.py").write_text("one")
-    versions = [docket.source_version(tmp_path)]
+    versions = [trial_run.source_version(tmp_path)]
     for part in ("nodes", "diagnosis"):
         (tmp_path / part / "a.py").write_text("two")
-        versions.append(docket.source_version(tmp_path))
+        versions.append(trial_run.source_version(tmp_path))
     assert versions[0] == versions[1] != versions[2]
 
 
@@ -86,7 +86,7 @@ def test_a_tampered_truth_is_refused(tmp_path, asked, short):
     folder = tmp_path / "run" / "trials" / "consistent-000"
     (folder / "truth.json").write_text("{}")
     with pytest.raises(InputError, match="not what was sealed"):
-        docket.judge(folder)
+        trial_run.judge(folder)
 
 
 def test_recordings_can_be_made_without_diagnosing(tmp_path, asked, short):
@@ -112,8 +112,8 @@ def test_a_trial_that_could_not_be_recorded_is_reported_and_left_out(tmp_path, a
             raise NotRecorded("lost messages")
         return prepare(trial, folder)
 
-    prepare = docket.prepare
-    monkeypatch.setattr(docket, "prepare", refuse)
+    prepare = trial_run.prepare
+    monkeypatch.setattr(trial_run, "prepare", refuse)
     seen = []
     results = prove(
         tmp_path / "run",

@@ -1,4 +1,4 @@
-"""Scoring: what counts as right, tied, false alarm, owed, covered, complete."""
+"""Scoring: what counts as right, tied, false alarm, expected, covered, complete."""
 
 import copy
 
@@ -99,7 +99,7 @@ def test_of_two_effects_one_that_the_recording_does_not_show_may_be_left_out():
     ).right
 
 
-def test_a_value_is_owed_only_where_its_bound_is_tight():
+def test_a_value_is_expected_only_where_its_bound_is_tight():
     far = copy.deepcopy(ANSWER)
     far["effects"][0]["parameters"]["time_constant"] = {"value": 0.02, "ci95": None}
     assert not score(TRUTH, far, None, None).values_right
@@ -108,7 +108,7 @@ def test_a_value_is_owed_only_where_its_bound_is_tight():
     assert score(loose, far, None, None).values[0].covered is None
 
 
-def test_an_owed_value_that_is_missing_is_wrong():
+def test_an_expected_value_that_is_missing_is_wrong():
     missing = copy.deepcopy(ANSWER)
     missing["effects"][0]["parameters"] = {}
     assert not score(TRUTH, missing, None, None).values_right

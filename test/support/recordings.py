@@ -3,7 +3,7 @@
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.closed_loop import simulate_laps
+from pierburg_ros.closed_loop import simulate_runs
 from pierburg_ros.control import Settings
 from pierburg_ros.estimation.data import Data, data_of, in_parts
 from pierburg_ros.plant import Inputs, Model, simulate
@@ -47,7 +47,7 @@ def recording_in_closed_loop(changes: dict[str, float], seed: int = 0) -> Record
     random = np.random.default_rng(seed)
     time = np.arange(0.0, 24.0, 0.002)
     setpoints = random.uniform(0.15, 1.4, 12)[(time / 2.0).astype(int)]
-    run = simulate_laps(NOMINAL.with_values(changes), MODEST, setpoints[np.newaxis], noise=NOISE, seed=seed)
+    run = simulate_runs(NOMINAL.with_values(changes), MODEST, setpoints[np.newaxis], noise=NOISE, seed=seed)
     return Recording("test.mcap", "hall_voltage", time, run.hall_voltage[0], Channel(time, run.duty[0]))
 
 

@@ -8,19 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.evidence.motion import INSTANT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 from pierburg_ros.plant.decode import decoded
-from pierburg_ros.signals import Signal
 
-GRID = 0.02
-"""Time step [s] on which missing torque is estimated."""
 SPOT = 0.05
-"""Width of the bins [rad] in which tight spots are looked for."""
+"""Width of the bins [rad] in which tight spots are looked for. Derived: the narrowest that a blind trial conceals;
+only starts of a search come from it."""
 MOVING = 0.1
-"""Velocity [rad/s] from which friction has a known sign."""
+"""Velocity [rad/s] from which friction has a known sign. Derived: twice the velocity that counts as standing still."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +59,13 @@ def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
     """
     value = model.values
     scale = data.angle_per_unit
-    grid = np.arange(run.time[0], run.time[-1], GRID)
+    grid = np.arange(run.time[0], run.time[-1], INSTANT)
     simulated, measured = (_averaged(run.time, values, grid) for values in (run.simulated(model), run.measured))
     damping = braking(model)
     stiffness = value.get("spring_stiffness", 0.0)
     error = scale * (measured - simulated)
-    torque = -(damping * np.gradient(error, GRID) + stiffness * error)
-    speeds = scale * np.gradient(measured, GRID), scale * np.gradient(simulated, GRID)
+    torque = -(damping * np.gradient(error, INSTANT) + stiffness * error)
+    speeds = scale * np.gradient(measured, INSTANT), scale * np.gradient(simulated, INSTANT)
     moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
     time, angle, velocity = grid[moving], decoded(model, measured[moving], run.quantity), speeds[0][moving]
     return MissingTorque(time, angle, velocity, torque[moving], value["gear_ratio"], float(run.time[-1]))
@@ -74,7 +73,7 @@ def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
 
 def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:
     """Means of `values` over one grid step around each grid point."""
-    edges = np.searchsorted(time, np.append(grid - GRID / 2, grid[-1] + GRID / 2))
+    edges = np.searchsorted(time, np.append(grid - INSTANT / 2, grid[-1] + INSTANT / 2))
     total = np.concatenate([[0.0], np.cumsum(values)])
     count = np.maximum(np.diff(edges), 1)
     means = (total[edges[1:]] - total[edges[:-1]]) / count

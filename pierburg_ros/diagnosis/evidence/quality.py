@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
+from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import Run
@@ -31,24 +31,24 @@ Kind = Literal[
     "little_travel",
 ]
 
-FEWEST_SAMPLES = 200
-"""Samples without which nothing can be fitted and judged."""
 SHORTEST = 2.0
-"""Duration [s] without which nothing can be fitted and judged: less than two time constants of the valve."""
+"""Duration [s] without which nothing can be fitted and judged. Chosen: less than two time constants of the valve, 1.15
+s each; not varied."""
 SHORT = 10.0
-"""Duration [s] below which rare events and slow changes stay unseen."""
+"""Duration [s] below which rare events and slow changes stay unseen. Chosen: it adds advice and decides no verdict."""
 SLOW_SAMPLING = 100.0
-"""Rate [Hz] below which a few milliseconds of delay or lag cannot be told from other errors."""
+"""Rate [Hz] below which a few milliseconds of delay or lag cannot be told from other errors. Derived: one sample
+period is then 10 ms, the delay itself. It adds advice; over 2 s it also sets the least number of samples."""
 SATURATED = 0.9
-"""Share of time at full duty from which a recording counts as saturated throughout."""
+"""Share of time at full duty from which a recording counts as saturated throughout. Chosen: a tenth of the time is
+left to tell friction and spring; not varied."""
 GAP = 3.0
-"""An interval of so many median ones is a gap."""
+"""An interval of so many median ones is a gap. Given: so `gaps` is defined in diagnosis.json."""
 MOST_GAPS = 0.02
-"""Share of time in gaps that counts as many."""
-SEEN = 0.02
-"""Time [s] on a stop from which it counts as touched."""
+"""Share of time in gaps that counts as many. Chosen: it adds advice and decides no verdict."""
 SHORT_TRAVEL = 0.35
-"""Travel [rad] below which what depends on the angle stays unseen: 20 degrees."""
+"""Travel [rad] below which what depends on the angle stays unseen: 20 degrees. Chosen: it adds advice and decides no
+verdict."""
 
 RECORD: dict[Kind, str] = {
     "no_movement": "Record again with duty steps large enough to move the shaft both ways.",
@@ -83,11 +83,12 @@ class Limit:
 
 def refuse_unusable(recordings: Sequence[Recording]) -> None:
     """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
+    fewest = round(SHORTEST * SLOW_SAMPLING)
     for recording in recordings:
-        if recording.time.size < FEWEST_SAMPLES or recording.duration < SHORTEST:
+        if recording.time.size < fewest or recording.duration < SHORTEST:
             raise InputError(
                 f"{recording.name} is too short ({recording.time.size} samples over {recording.duration:.2f} s);"
-                f" expected at least {FEWEST_SAMPLES} samples over {SHORTEST:g} s. Record longer: a minute with"
+                f" expected at least {fewest} samples over {SHORTEST:g} s. Record longer: a minute with"
                 " movements in both directions tells most."
             )
 
@@ -267,7 +268,7 @@ def _span(motions: Sequence[Motion]) -> tuple[float, float]:
 
 def _touched(motions: Sequence[Motion], end: str) -> bool:
     held = [(m.time, m.closed if end == "closed" else m.open) for m in motions]
-    return any(float(np.sum(np.diff(time)[on[1:] & on[:-1]])) >= SEEN for time, on in held)
+    return any(float(np.sum(np.diff(time)[on[1:] & on[:-1]])) >= INSTANT for time, on in held)
 
 
 def _resolution(runs: Sequence[Run]) -> float:

@@ -14,9 +14,8 @@ from pierburg_ros.estimation.initial_state import InitialState
 from pierburg_ros.estimation.run import Run
 
 SETTLED = 5
-"""Samples to either side of a restart over which the angle is averaged while the shaft stands still."""
-FEWEST = 5
-"""A stretch has at least so many samples."""
+"""Samples to either side of a restart over which the angle is averaged, and the least that a stretch has. Derived: the
+mean of eleven is known to 0.3 of the noise."""
 
 
 def forgotten(effects: Iterable[str]) -> bool:
@@ -40,7 +39,7 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
     cuts = np.flatnonzero(np.diff(number, prepend=-1))
     stretches = []
     for first, last in zip(cuts, np.append(cuts[1:], run.time.size), strict=True):
-        if last - first < FEWEST:
+        if last - first < SETTLED:
             continue
         part = run.part(slice(int(first), int(last)))
         stretches.append(replace(part, start=_start(run, motion, int(first))))

@@ -12,14 +12,10 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
 
-FAST = 0.4
-"""Share of the fastest travel of the recording from which a movement is called fast."""
-LATE = 0.6
-"""From which share of the recording on windows are called late, where they all are."""
 LONG = 1.0
-"""Length [s] from which a window is described by its beginning and its reach."""
+"""Length [s] from which a window is described by its beginning and its reach. Chosen: it decides a word."""
 PRESSING = 0.01
-"""Duty from which the motor is said to press against a stop."""
+"""Duty from which the motor is said to press against a stop. Chosen: it decides a word."""
 
 
 def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, float]]) -> list[Location]:
@@ -28,7 +24,7 @@ def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, f
     `residual` is that of the recalibrated nominal model on the samples of `motion`.
     """
     total = float(residual @ residual)
-    late = bool(windows) and min(start for start, _ in windows) > LATE * motion.time[-1]
+    late = bool(windows) and min(start for start, _ in windows) > 0.6 * motion.time[-1]
     found = []
     for start, end in windows:
         inside = _samples(motion, start, end)
@@ -92,7 +88,7 @@ def _arriving(motion: Motion, inside: NDArray[np.intp]) -> str | None:
 def _travelling(motion: Motion, inside: NDArray[np.intp]) -> str:
     velocity = motion.velocity[inside]
     fastest = float(np.quantile(np.abs(motion.velocity), 0.99))
-    speed = "fast" if float(np.max(np.abs(velocity))) > FAST * fastest else "slow"
+    speed = "fast" if float(np.max(np.abs(velocity))) > 0.4 * fastest else "slow"
     if np.isin(motion.reversals, inside).any():
         return f"reversal {_near(motion, inside)}"
     return f"{speed} {_way(motion, int(inside[np.argmax(np.abs(velocity))]))} {_near(motion, inside)}"

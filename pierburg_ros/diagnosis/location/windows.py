@@ -10,12 +10,14 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
 
 BIN = 0.1
-"""Finest step of a window's ends [s]; coarser where a recording would have more than `MOST_BINS`."""
+"""Finest step of a window's ends [s]; coarser where a recording would have more than `MOST_BINS`. Derived: half the
+shortest window that a diagnosis may name."""
 MOST_BINS = 600
+"""Steps into which a recording is cut at most. Work: a minute in steps of 0.1 s; time and memory grow with its square.
+"""
 ENOUGH = 0.9
-"""Share of what the longest allowed windows hold, beyond which windows are not extended."""
-GATHERED = 0.9
-"""Share of what any number of windows of the same total length would hold that few ones must keep."""
+"""Share of an energy that shorter windows, or fewer, must keep of what longer or more ones hold. Chosen: a tenth is
+not worth a longer window; not varied."""
 
 
 def windows(
@@ -45,7 +47,7 @@ def windows(
 
 
 def _useful_length(held: Signal, binned: Signal, least: int) -> int:
-    """How many bins are worth choosing; `held` is the energy that the best windows of each total length hold."""
+    """How many bins are worth taking; `held` is the energy that the best windows of each total length hold."""
     blocks = np.add.reduceat(binned, np.arange(0, binned.size, least))
     reachable = np.cumsum(np.sort(blocks)[::-1])
     lengths = np.arange(held.size)
@@ -53,7 +55,7 @@ def _useful_length(held: Signal, binned: Signal, least: int) -> int:
     enough = int(np.argmax(held >= ENOUGH * held[-1]))
     kept = held[: enough + 1] / np.maximum(unbound[: enough + 1], 1e-300)
     kept[:least] = 0.0
-    gathered = np.flatnonzero(kept >= GATHERED)
+    gathered = np.flatnonzero(kept >= ENOUGH)
     return int(gathered[-1]) if gathered.size else int(np.argmax(kept))
 
 

@@ -16,7 +16,8 @@ from pierburg_ros.estimation.intervals import Estimate, estimates
 from pierburg_ros.workers import workers
 
 CONFIRMED = 0.9
-"""Share of the error on validation samples to which a residual torque must bring it to be kept."""
+"""Share of the error on validation samples to which a residual torque must bring it to be kept. Measured: it keeps the
+shape of practice-20 out, which made the validation error worse, and those of three of n = 4 splits of real runs in."""
 
 
 @dataclass(frozen=True)

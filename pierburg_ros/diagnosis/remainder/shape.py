@@ -10,32 +10,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
+from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
+from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
-from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.estimation.least_squares import BRIEF, minimise
 from pierburg_ros.plant import Model
 
 ANGLES = 7
-"""Nodes over the angle."""
-CREEP = 0.1
-"""The innermost velocity nodes stand this far to either side of 0 [rad/s], for friction to change between them."""
+"""Nodes over the angle. Chosen: one for every 15 degrees of the valve; not varied."""
 SPREAD = 0.05
-"""Prior standard deviation of a node [N.m], a quarter of the sliding friction: keeps unvisited nodes small."""
+"""Prior standard deviation of a node [N.m]: keeps unvisited nodes small. Chosen: a quarter of the sliding friction of
+the valve; not varied, not scaled with the actuator."""
 STEEPNESS = 0.02
-"""Prior standard deviation of the difference of neighbouring nodes [N.m]: keeps the shape smooth."""
+"""Prior standard deviation of the difference of neighbouring nodes [N.m]: keeps the shape smooth. Chosen: a tenth of
+the sliding friction of the valve; not varied, not scaled with the actuator."""
 WEIGHT = 5.0
-"""Residuals that repeat themselves over stretches count less than their number: so much more the prior weighs."""
-LARGEST = 1.0
-"""A node stays within so many N.m."""
-STEP = 0.002
-"""Difference step of a node [N.m]."""
-ITERATIONS = 4
+"""How much more the prior weighs because residuals repeat themselves. Derived: the root of 25 samples that count as
+one."""
 STRETCH = 1.0
-"""Length of the stretches that are simulated each from the measured state [s]."""
+"""Length of the stretches that are simulated each from the measured state [s]. Chosen: a slip at the wrong moment is
+forgotten after one; not varied."""
 STRETCHES = 24
-"""Into how many stretches of time the missing torque is averaged."""
+"""Into how many stretches of time the missing torque is averaged. Chosen: it makes a plot and decides no verdict."""
 
 
 Way = Callable[[Data], Model]
@@ -127,21 +125,24 @@ def _fitted(data: Data, base: Model) -> Model:
         return np.concatenate([np.sign(misfit) * np.log1p(np.abs(misfit)), prior @ point])
 
     size = angle.size * velocity.size
-    bound = np.full(size, LARGEST)
-    solution = minimise(residual, np.zeros(size), -bound, bound, np.full(size, STEP), ITERATIONS, 3e-3)
+    bound, step = np.full(size, WIDTH * SPREAD), np.full(size, STEEPNESS / 10.0)
+    solution = minimise(residual, np.zeros(size), -bound, bound, step, BRIEF // 2, 3e-3)
     return shaped(solution.point)
 
 
 def nodes(data: Data) -> tuple[Signal, Signal]:
-    """Nodes of angle [rad] and velocity [rad/s], placed by how often the data visit them."""
+    """Nodes of angle [rad] and velocity [rad/s], placed by how often the data visit them.
+
+    The innermost ones of velocity stand where friction has a known sign: it changes between them.
+    """
     motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
     angles = np.concatenate([motion.angle[motion.moving] for motion in motions])
     speeds = np.concatenate([motion.velocity[motion.moving] for motion in motions])
     angle = _apart(np.quantile(angles, np.linspace(0.01, 0.99, ANGLES)), 0.03)
     sides = []
-    for side in (speeds[speeds > CREEP], -speeds[speeds < -CREEP]):
+    for side in (speeds[speeds > MOVING], -speeds[speeds < -MOVING]):
         outer = np.quantile(side, (0.5, 0.95)) if side.size else np.empty(0)
-        sides.append(_apart(np.concatenate([[CREEP], outer]), 0.05))
+        sides.append(_apart(np.concatenate([[MOVING], outer]), 0.05))
     return angle, np.concatenate([-sides[1][::-1], sides[0]])
 
 

@@ -13,9 +13,8 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Diagnosis, ResidualTorque
 
 BUCKETS = 1500
-"""Stretches of time of which a curve shows the lowest and the highest sample."""
-NUMBERED = 6
-"""Windows whose rank is written over them; more would overlap."""
+"""Stretches of time of which a curve shows the lowest and the highest sample. Derived: as many as a wide screen has
+pixels for the plot."""
 COLOURS = {"measured": "#1f2933", "nominal": "#c2413b", "recalibrated": "#e08e2b", "final": "#2563a8"}
 DUTY = "#4b8b57"
 WINDOW = "#f5c542"
@@ -82,7 +81,7 @@ def _shade(plot: go.Figure, diagnosis: Diagnosis) -> None:
         plot.add_vrect(
             x0=place.start, x1=place.end, row="all", col=1, fillcolor=WINDOW, opacity=0.28, line_width=0, layer="below"
         )
-        if rank <= NUMBERED:
+        if rank <= 6:  # more would overlap
             where = {"x": (place.start + place.end) / 2, "y": 1.0, "yref": "y domain", "yanchor": "top"}
             plot.add_annotation(**where, text=str(rank), showarrow=False, row=1, col=1)
     if diagnosis.fit.noise_floor is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -31,10 +32,8 @@ VERDICTS = {
     "unexplained": "something is left that no effect of the catalogue removes",
 }
 """What each verdict means."""
-ANGULAR = {"rad": (57.29577951308232, "degrees"), "rad/s": (57.29577951308232, "degrees/s")}
-"""Factor and unit in which people read an angle."""
-SHOWN = 12
-"""Candidates shown at once; the others are folded away."""
+ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
+"""Units in which people read an angle."""
 
 
 def write_page(path: Path, result: Result) -> None:
@@ -57,7 +56,7 @@ def page(diagnosis: Diagnosis, plot: str, torque: str) -> str:
         d=diagnosis,
         meaning=VERDICTS[diagnosis.verdict],
         regimes=[regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
-        shown=SHOWN,
+        shown=12,  # candidates; the others are folded away
         plot=plot,
         torque=torque,
     )
@@ -66,7 +65,8 @@ def page(diagnosis: Diagnosis, plot: str, torque: str) -> str:
 def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
     """A regime for people: angles in degrees, shares as they stand."""
     regime = diagnosis.regimes[index]
-    factor, unit = ANGULAR.get(regime.unit, (1.0, "" if regime.unit == "1" else regime.unit))
+    factor = math.degrees(1.0) if regime.unit in ANGULAR else 1.0
+    unit = ANGULAR.get(regime.unit, "" if regime.unit == "1" else regime.unit)
     low, high = (factor * end for end in regime.range)
     return {
         "variable": words(regime.variable),

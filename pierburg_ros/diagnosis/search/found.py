@@ -11,17 +11,19 @@ from scipy.linalg import qr
 from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
-from pierburg_ros.diagnosis.search.selection import EXPLAINED, overlooks
+from pierburg_ros.diagnosis.search.selection import overlooks
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 INDEPENDENT = 1e-3
-"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none."""
+"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
+Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
 REDATED = np.arange(-4.0, 4.1, 0.25)
-"""Where around its first estimate the moment of a change is looked for again [s]."""
+"""Where around its first estimate the moment of a change is looked for again [s]. Work: 33 simulations; a quarter of a
+second apart, which a descent bridges."""
 
 
 def promised(

@@ -13,19 +13,23 @@ from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.effects.effect import Ripple
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.least_squares import BRIEF
 
 LENGTHS = (0.5, 1.0, 2.0, 4.0)
-"""Lengths of the stretches [s] that are fitted in turn, before whole recordings."""
+"""Lengths of the stretches [s] that are fitted in turn, before whole recordings. Measured: 0.5 s ranks the number of
+teeth rightly in 10 of n = 10 trials of cogging in closed loop, 1 s in 9; each next is twice as long."""
 AMPLITUDES = (0.006, 0.012, 0.025)
-"""Amplitudes [N.m] from which a descent may start."""
+"""Amplitudes [N.m] from which a descent may start. Chosen: a factor of two apart over what blind trials conceal, 0.008
+to 0.06; not varied, not scaled with the actuator."""
 PHASES = tuple(math.pi / 4 * number for number in range(8))
-"""Phases [rad] from which it may."""
-BRIEF = 8
-"""Iterations of a descent through stretches of one length."""
+"""Phases [rad] from which it may. Measured: over whole recordings 0.3 rad beside the truth ends at 1.25 to 16 times
+the noise (n = 2); an eighth of a turn leaves at most 0.4 rad, which short stretches bridge."""
 SHOWN = 0.75
-"""Error over the shortest stretches, over that without the ripple, from which the ripple is not followed up."""
+"""Error over the shortest stretches, over that without the ripple, from which the ripple is not followed up. Work:
+what explains less costs five descents for nothing; not varied."""
 FOLLOWED = 2
-"""How many explanations are."""
+"""How many explanations are followed up. Work: each costs three descents through stretches and two whole ones; not
+varied."""
 
 
 def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
-from pierburg_ros.diagnosis.search.race import BRIEF, NEAR
+from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import alike
 from pierburg_ros.effects import EFFECT
@@ -14,7 +14,8 @@ from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, quantities, without
 
 FADING = (0.75, 0.5, 0.25, 0.0)
-"""Shares of an effect's strength at which what may stand for it is fitted in turn."""
+"""Shares of an effect's strength at which what may stand for it is fitted in turn. Work: one brief fit each; in one
+step the others would have to take over all of it, and events would jump. Not varied."""
 
 
 def fit_rivals(search: Search, best: Fit) -> None:
@@ -53,12 +54,12 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
         effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
         stage = Explanation(explanation.drifted, effects, explanation.changed)
         try:
-            look = search.glance.fit(stage, values, BRIEF)
+            stage_fit = search.first_part.fit(stage, values, ROUNDS)
         except InputError:
             continue
-        if look.ratio > NEAR * best.ratio:
+        if stage_fit.ratio > NEAR * best.ratio:
             return
-        values = look.values
+        values = stage_fit.values
     search.add(explanation, search.add(explanation, values).values)
 
 

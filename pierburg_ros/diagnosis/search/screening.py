@@ -17,14 +17,15 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 LATE = 0.5
-"""Excess of squared error in a first look, as a share of the whole, below which the look takes in everything."""
+"""Excess of squared error in a first fit, as a share of the whole, below which that fit takes in everything. Derived:
+less than half of what is left to explain would be seen."""
 STARTS_TRIED = 2
-"""Starts from which a first look is taken."""
+"""Starts from which a first fit is taken. Work: each costs one brief fit; not varied."""
 
 
 @dataclass(frozen=True)
-class Prospect:
-    """An explanation to look at, by what it is grown: on which samples, from which starts.
+class Candidate:
+    """An explanation to be fitted: by what it is grown, on which samples, from which starts.
 
     `base` is the fit that it grows on, on the same samples, `promise` the error over noise that a linear step
     from there comes to, infinite where none was made.
@@ -44,7 +45,7 @@ class Prospect:
 
     @property
     def drifts(self) -> bool:
-        """Whether it grows by a drift: cheap to look at, and perhaps what others grow on."""
+        """Whether it grows by a drift: cheap to fit, and perhaps what others grow on."""
         return self.addition in self.explanation.drifted
 
     @property
@@ -56,17 +57,17 @@ class Prospect:
 def screened(
     fit: Fit,
     whole: Estimator,
-    glance: Estimator,
+    first_part: Estimator,
     drifts: tuple[str, ...],
     pool: Executor,
     progress: Callable[[str], None],
-) -> list[Prospect]:
-    """Every addition to `fit` with its promise: at a `glance`, the first part of each run, where that shows it."""
+) -> list[Candidate]:
+    """Every addition to `fit` with its promise, on the `first_part` of each run where that shows it."""
     base = whole.restated(fit)
-    brief = glance.restated(base)
-    quick = (whole, base) if _shows_late(brief, base) else (glance, brief)
+    brief = first_part.restated(base)
+    quick = (whole, base) if _shows_late(brief, base) else (first_part, brief)
 
-    def prospect(task: tuple[Explanation, tuple[Addition, list[Start]]]) -> Prospect:
+    def candidate(task: tuple[Explanation, tuple[Addition, list[Start]]]) -> Candidate:
         explanation, (addition, starts) = task
         progress(explanation.label)
         if explanation.changed != fit.explanation.changed:
@@ -76,12 +77,12 @@ def screened(
         slow = explanation.changed is not None or _takes_time(addition)
         return _acting(explanation, addition, starts, *((whole, base) if slow else quick))
 
-    return list(pool.map(prospect, expansions(base, whole.data, drifts).items()))
+    return list(pool.map(candidate, expansions(base, whole.data, drifts).items()))
 
 
-def most_promising(prospects: list[Prospect], most: int) -> list[Prospect]:
+def most_promising(candidates: list[Candidate], most: int) -> list[Candidate]:
     """The first so many by what a linear step promises."""
-    return sorted(prospects, key=lambda prospect: prospect.promise)[:most]
+    return sorted(candidates, key=lambda candidate: candidate.promise)[:most]
 
 
 def _takes_time(variant: Variant) -> bool:
@@ -90,30 +91,30 @@ def _takes_time(variant: Variant) -> bool:
     return effect.dated or effect.memory == "lasting"
 
 
-def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Prospect:
+def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Candidate:
     """A change in the middle of the recording on top of `base`, at the moments that gain most."""
     name = explanation.changed
     assert name is not None
     starts = change_starts(estimator, base, name, STARTS_TRIED)
-    return Prospect(explanation, name, estimator, base, tuple(starts))
+    return Candidate(explanation, name, estimator, base, tuple(starts))
 
 
-def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: Fit) -> Prospect:
+def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: Fit) -> Candidate:
     """One more drift on top of `base`."""
     promise = promised_by_drift(estimator.at(explanation, base.values))
-    return Prospect(explanation, name, estimator, base, (base.values,), _error(promise, base))
+    return Candidate(explanation, name, estimator, base, (base.values,), _error(promise, base))
 
 
 def _acting(
     explanation: Explanation, variant: Variant, starts: list[Start], estimator: Estimator, base: Fit
-) -> Prospect:
+) -> Candidate:
     """One more effect on top of `base`, from the starts that promise most, if any does."""
     found = promised(estimator, base, variant, starts)[:STARTS_TRIED]
     if adequate(base):
         found = [pair for pair in found if base.chi2 - pair[0] > PROMISING]
     promise = min((chi2 for chi2, _ in found), default=np.inf)
     chosen = tuple({**base.values, **start} for _, start in found)
-    return Prospect(explanation, variant, estimator, base, chosen, _error(promise, base))
+    return Candidate(explanation, variant, estimator, base, chosen, _error(promise, base))
 
 
 def _error(chi2: float, fit: Fit) -> float:
@@ -121,6 +122,6 @@ def _error(chi2: float, fit: Fit) -> float:
     return float(np.sqrt(chi2 / fit.solution.residual.size))
 
 
-def _shows_late(glance: Fit, whole: Fit) -> bool:
-    """Whether the first look would miss most of what is left to explain."""
-    return glance.ratio**2 - 1.0 < LATE * (whole.ratio**2 - 1.0)
+def _shows_late(first_part: Fit, whole: Fit) -> bool:
+    """Whether a fit of the first part would miss most of what is left to explain."""
+    return first_part.ratio**2 - 1.0 < LATE * (whole.ratio**2 - 1.0)

@@ -11,9 +11,9 @@ import numpy as np
 from pierburg_ros.diagnosis.search.candidates import drifting, jumps
 from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
-from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
+from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
-from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
 from pierburg_ros.estimation.refinement import refined
@@ -21,8 +21,17 @@ from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
 
-GLANCE = 24.0
-"""How much of a recording [s] a first look takes in."""
+FIRST_PART = 2 * CYCLE * BLOCK
+"""How much of a recording [s] a first fit takes in. Derived: two cycles of eight blocks, so that every kind of block
+is there twice."""
+NEARLY = 5.0
+"""Training error over noise up to which the best explanation may only have stopped too early. Chosen: descents to true
+explanations were seen to stop at 1.25 to 16 times the noise (n = 2 trials); not varied."""
+REFINED = 2
+"""How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
+COMPARABLE = 1.5
+"""Training error over that of the best explanation of its size up to which a fit is refined. Work: each refinement
+costs up to 18 descents; not varied."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +40,7 @@ class Beam:
 
     Up to `width` explanations of one size are grown further, besides every single drift, and explanations have up to
     `depth` quantities. Of all additions to them, the `ahead` most promising are fitted before the others. Once
-    `budget` prospects have been looked at, explanations no longer grow.
+    `budget` candidates have been fitted, explanations no longer grow.
     """
 
     width: int = 3
@@ -52,10 +61,10 @@ class Search:
         self.progress = progress
         self.drifts = drifting(nominal)
         self.whole = Estimator(data, nominal)
-        self.glance = Estimator(data.cut(GLANCE), nominal)
+        self.first_part = Estimator(data.cut(FIRST_PART), nominal)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
-        self.looked_at = 0
+        self.tried = 0
         self.pool = pool
 
     def run(self) -> Fit:
@@ -79,10 +88,10 @@ class Search:
     @property
     def exhausted(self) -> bool:
         """Whether the budget is spent."""
-        return self.looked_at >= self.beam.budget
+        return self.tried >= self.beam.budget
 
     def _grow(self, best: Fit) -> None:
-        """Look for explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
+        """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
         size = best.explanation.size
         seeds = self._seeds(best)
         if len(seeds) > 1:
@@ -128,8 +137,8 @@ class Search:
 
     def _fit_most_promising(self, seeds: Sequence[Fit]) -> None:
         """Fit what linear steps promise most on any of the `seeds`: often one of them accounts for all."""
-        prospects = [prospect for seed in seeds for prospect in self._screened(seed)]
-        self._race(most_promising(prospects, self.beam.ahead), most=self.beam.ahead // 3)
+        candidates = [candidate for seed in seeds for candidate in self._screened(seed)]
+        self._race(most_promising(candidates, self.beam.ahead), most=self.beam.ahead // 3)
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""
@@ -145,26 +154,26 @@ class Search:
         if seed.explanation in self.expanded:
             return []
         self.expanded.add(seed.explanation)
-        prospects = self._screened(seed)
+        candidates = self._screened(seed)
         known = self.best_of_size(seed.explanation.size + 1)
         if known is not None and adequate(known) and not adequate(seed):
-            prospects = most_promising(prospects, self.beam.ahead // 3)
-        return self._race(prospects)
+            candidates = most_promising(candidates, self.beam.ahead // 3)
+        return self._race(candidates)
 
-    def _screened(self, seed: Fit) -> list[Prospect]:
+    def _screened(self, seed: Fit) -> list[Candidate]:
         """What has not been fitted yet of all that may be added to `seed`."""
-        found = screened(seed, self.whole, self.glance, self.drifts, self.pool, self.progress)
-        return [prospect for prospect in found if prospect.explanation not in self.fits]
+        found = screened(seed, self.whole, self.first_part, self.drifts, self.pool, self.progress)
+        return [candidate for candidate in found if candidate.explanation not in self.fits]
 
-    def _race(self, prospects: Sequence[Prospect], most: int | None = None) -> list[Fit]:
-        """Whole fits of the prospects that come out ahead."""
-        if not prospects:
+    def _race(self, candidates: Sequence[Candidate], most: int | None = None) -> list[Fit]:
+        """Whole fits of the candidates that come out ahead."""
+        if not candidates:
             return []
-        self.looked_at += len(prospects)
-        known = self.best_of_size(prospects[0].explanation.size)
-        leading = dict.fromkeys((self.whole, self.glance), known.ratio if known else np.inf)
-        ahead = winners(prospects, leading, self.pool, self.progress, most)
-        return list(self.pool.map(lambda look: self.add(look.explanation, look.values), ahead))
+        self.tried += len(candidates)
+        known = self.best_of_size(candidates[0].explanation.size)
+        leading = dict.fromkeys((self.whole, self.first_part), known.ratio if known else np.inf)
+        ahead = winners(candidates, leading, self.pool, self.progress, most)
+        return list(self.pool.map(lambda fit: self.add(fit.explanation, fit.values), ahead))
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
         """Fit an explanation and keep it if it is the best of its kind so far."""
@@ -233,14 +242,6 @@ class Search:
             if kept.explanation.size >= best.explanation.size:
                 return kept
             best = kept
-
-
-NEARLY = 5.0
-"""Training error over noise up to which the best explanation may only have stopped too early."""
-REFINED = 2
-"""How many fits of one size are refined in one go."""
-COMPARABLE = 1.5
-"""Training error over that of the best explanation of its size up to which a fit is refined."""
 
 
 def _near(fit: Fit, best: Fit) -> bool:

@@ -14,7 +14,6 @@ from pierburg_ros.identification.paper.lumps import lumps
 from pierburg_ros.plant import Model
 
 Random = np.random.Generator
-RIGHT_ANGLE = math.pi / 2
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,7 @@ def rich(time: Signal, span: DutyRange, random: Random) -> Signal:
 
 def setpoints(time: Signal, random: Random) -> Signal:
     """Random setpoints over the travel, held 0.8 to 3 s [rad]."""
-    return held(time, random, 0.8, 3.0, lambda: float(random.uniform(0.0, RIGHT_ANGLE)))
+    return held(time, random, 0.8, 3.0, lambda: float(random.uniform(0.0, math.pi / 2)))
 
 
 def square(time: Signal, random: Random) -> Signal:
@@ -133,7 +132,7 @@ def sweep(time: Signal, random: Random) -> Signal:
     """A sine about the middle of the travel, its frequency rising from 0.1 to 2 Hz [rad]."""
     since = time - time[0]
     phase = 0.1 * since + 0.5 * 1.9 / max(since[-1], 1e-9) * since**2
-    return np.asarray(0.5 * RIGHT_ANGLE + 0.35 * RIGHT_ANGLE * np.sin(2.0 * np.pi * phase))
+    return np.asarray(0.5 * (math.pi / 2) + 0.35 * (math.pi / 2) * np.sin(2.0 * np.pi * phase))
 
 
 DUTY_RECIPES = {
@@ -142,7 +141,8 @@ DUTY_RECIPES = {
 }
 SETPOINT_RECIPES = {function.__name__: function for function in (setpoints, square, sweep)}
 DURATION = {"staircase": 150.0, "steps": 36.0, "rich": 120.0, "stops": 30.0, "negative": 24.0}
-"""Duration [s] of a recipe where none is given; 60 s for the others."""
+"""Duration [s] of a recipe where none is given; 60 s for the others. Derived: what the recipe takes once, 36 s for
+three steps of 6 s each way; the staircase has 2.5 s a stair."""
 
 
 def purpose(name: str) -> str:

@@ -13,7 +13,7 @@ from pierburg_ros.identification.paper.holds import Settled, angle_noise, holds,
 from pierburg_ros.recording import Recording
 
 FEWEST = 3
-"""Each branch needs this many settled angles."""
+"""Each branch needs this many settled angles. Derived: two fix a line, one more says whether it is one."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,8 @@ from pierburg_ros.identification.paper.static_characteristic import StaticCharac
 from pierburg_ros.recording import Recording
 
 FASTEST = 1e6
-"""Largest pole that is tried [rad/s]."""
+"""Largest pole that is tried [rad/s]. Derived: 15 times the fast pole of Table I, 66 krad/s, and 2,000 samples at 500
+Hz in one: no recording tells more."""
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pierburg_ros.plant import Model
 
 PRINTED = {"gain": 0.4363, "damping_ratio": 137.68, "natural_frequency": 240.16}
-"""K [rad/V], xi and omega_n [rad/s] as printed in Table I."""
+"""K [rad/V], xi and omega_n [rad/s]. Given: Table I of the paper."""
 SMALLEST_MOVING_STEP = 0.20
-"""Duty of the smallest step of Fig. 4, which moves the shaft."""
+"""Duty of the smallest step, which moves the shaft. Given: Fig. 4 of the paper."""
 LARGEST_FREE_STEP = 0.24
-"""Duty of the largest step of Fig. 4, which as far as its picture shows stays off the stop."""
+"""Duty of the largest step, which as far as its picture shows stays off the stop. Given: Fig. 4 of the paper."""
 SAMPLE_PERIOD = 0.002
-"""Sample period of the recordings [s]."""
+"""Sample period of the recordings [s]. Given: 500 Hz, the rate of plant and controller."""
 
 
 @dataclass(frozen=True)

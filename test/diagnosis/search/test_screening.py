@@ -4,7 +4,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from pierburg_ros.diagnosis.search.explanation import Explanation, Variant
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import drifting

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pierburg_ros.diagnosis.search.explanation import WHEN, Explanation
 from support.fits import found_among, made_up, of_chi2
 from support.recordings import NOMINAL, data_on, recording, recording_under
 
