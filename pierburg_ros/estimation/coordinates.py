@@ -56,8 +56,8 @@ class Axis:
 class Coordinates:
     """Between values by dotted name and the numbers that a search moves, one for each of `names`.
 
-    A positive base parameter is searched by the logarithm of its ratio to the `nominal` one, an effect's parameter as
-    it declares, a moment as a share of the `duration` [s].
+    A positive base parameter is searched by the logarithm of its ratio to the `nominal` one. An effect's parameter is
+    searched as it declares, a moment as a share of the `duration` [s].
     """
 
     def __init__(self, names: tuple[str, ...], nominal: Model, duration: float) -> None:

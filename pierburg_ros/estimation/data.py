@@ -84,7 +84,7 @@ class Data:
 
     @property
     def validation(self) -> Flags:
-        """Which samples of `residual` choose between explanations that fit those that train alike."""
+        """Which samples of `residual` decide between explanations that fit the training samples alike."""
         return np.concatenate([run.validation for run in self.runs])
 
     @property

@@ -108,8 +108,9 @@ def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: flo
 def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:
     """Points that an interval must hold: `reach` away along one of the coordinates, then in the valley.
 
-    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`: from where the valley
-    leads, from where it was last, and from where they are at the best. `patience`: reaches without success that end it.
+    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`. Three starts are tried: where
+    the valley leads, where it was last, and the best values. `patience` is the number of reaches without success that
+    end the search.
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = coordinates.bounds

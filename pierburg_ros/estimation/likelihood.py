@@ -28,9 +28,9 @@ above the training error."""
 def coarse_step(measured: Sequence[Signal], noise: float) -> float:
     """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0.
 
-    Rounding a simulation does not make it fit better while the noise carries samples over the steps: noise of standard
-    deviation s leaves an error of 0.8 s d (squared) beside a rounded signal with steps d, and s^2 + d^2 / 12 beside a
-    smooth one, which is less up to d = 8 s.
+    Rounding a simulation does not make it fit better while the noise carries samples over the steps. With steps d,
+    noise of standard deviation s leaves a squared error of 0.8 s d beside a rounded simulation. Beside a smooth one it
+    leaves s^2 + d^2 / 12, which is less up to d = 8 s.
     """
     step = min(_grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))

@@ -54,7 +54,7 @@ class MissingTorque:
 def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
     """What the load torque of `model` lacks.
 
-    While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque), from
+    While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque). This is
     equation (6) of the paper without the inertia, which is out of reach (time constant 15 us).
     """
     value = model.values

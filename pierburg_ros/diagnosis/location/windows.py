@@ -26,8 +26,8 @@ def windows(
     """Windows (start, end) [s] that hold the most of `energy`, the one with the most of it first.
 
     At most `most` windows, each at least `shortest` [s], together at most the share `quarter` of the recording;
-    exact for window ends on a grid of 0.1 s. They are no longer in total than it takes to hold 90 % of
-    what the longest would, and shorter where so few windows would miss much that more of them could hold.
+    exact for window ends on a grid of 0.1 s. In total they are as long as it takes to hold 90 % of what the longest
+    would. They are shorter where more windows of that length would hold much more.
     """
     duration = float(time[-1] - time[0])
     count = min(MOST_BINS, int(duration / BIN))

@@ -62,9 +62,9 @@ def fit_shape(
 ) -> Shape:
     """The residual torque over angle and velocity that makes a simulation fit the training samples.
 
-    Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held
-    back from it, with or without a shape: parameters fitted to whole runs without the missing physics may have
-    been bent towards the few standstills that it has displaced.
+    Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held back from
+    it, with or without a shape. Parameters fitted to whole runs without the missing physics may be wrong for the sake
+    of a few standstills that it has displaced.
     """
     way = ways[0]
     if len(ways) > 1:
@@ -102,9 +102,9 @@ def _left_out(data: Data, way: Way) -> float:
 def _fitted(data: Data, base: Model) -> Model:
     """`base` with its best shape.
 
-    Bilinear between about 7 x 6 nodes, damped Gauss-Newton on the signal simulated in stretches of 1 s, each from
-    the measured state, so that a slip at the wrong moment is forgotten after a second. Large errors count by their
-    logarithm. A prior keeps the shape small and smooth.
+    It is bilinear between about 7 x 6 nodes. The signal is simulated in stretches of 1 s, each from the measured state:
+    a slip at the wrong moment is forgotten after a second. Large errors count by their logarithm. A prior keeps the
+    shape small and smooth.
     """
     stretches = restarted(data, STRETCH) if forgotten(base.active_effects) else data
     training = stretches.train

@@ -81,7 +81,7 @@ def search(
 def _last_values(found: Search, chosen: Fit) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
-    Where events jump, other local minima are searched: a fit may account for all in one beside the lowest.
+    Where events jump, other local minima are searched: a fit may reach the noise in one that is not the lowest.
     """
     estimator = Estimator(with_validation(found.data), found.nominal)
     fit = estimator.fit(chosen.explanation, chosen.values)

@@ -25,8 +25,8 @@ def promised(
 ) -> list[tuple[float, dict[str, float]]]:
     """Starts by the chi2 that a linear step from `base` along them promises, best first.
 
-    Each start is simulated once on top of `base`; what re-fitting the base could do about it is projected
-    out; two starts that differ in phase alone count as one with a free phase.
+    Each start is simulated once on top of `base`. What a re-fit of the base can change is projected out. Two starts
+    that differ in phase alone count as one with a free phase.
     """
     projected = _projection(base)
     residual = projected(base.solution.residual)
@@ -86,7 +86,7 @@ def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list
 
 
 def redated(estimator: Estimator, fit: Fit) -> Fit:
-    """A fit with a change, its moment looked for again among those around it: the cost has many local minima there."""
+    """A fit with the best moment of its change among those around it: the cost has many local minima there."""
     name = f"{fit.explanation.changed}{WHEN}"
     coordinates = estimator.coordinates(fit.explanation)
     moments = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]

@@ -77,7 +77,7 @@ def _second(entry: Entry, progress: Callable[[str], None]) -> Entry:
 
 
 def _not_behind(entries: Sequence[Entry], best: Mapping[Estimator, float]) -> list[Entry]:
-    """Those not far behind; drifts stay, and what jumps stays while nothing accounts for all: its cost may mislead."""
+    """Those not far behind. Drifts stay; so does what jumps while nothing accounts for all: its cost may mislead."""
     leading = dict(best)
     for entry in entries:
         estimator = entry.candidate.estimator
@@ -100,7 +100,7 @@ def _best_of_each(entries: Sequence[Entry]) -> list[Entry]:
 
 
 def _deserves_whole_fit(entry: Entry, rank: int, nearest: float) -> bool:
-    """On top of what accounts for all, what gains noticeably; otherwise the best few, what is near them, drifts."""
+    """Beyond what accounts for all: what gains noticeably. Otherwise: the best few, what is near them, and drifts."""
     base = entry.candidate.base
     if adequate(base):
         return bool(base.misfit - entry.fit.misfit > PROMISING)

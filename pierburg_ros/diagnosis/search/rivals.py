@@ -43,8 +43,8 @@ def _by_parameters(rest: Explanation, drifts: tuple[str, ...]) -> Iterator[Expla
 def _take_over(search: Search, explanation: Explanation, fading: Variant, best: Fit) -> None:
     """Fit an explanation that stands for an effect of `best` by other means, if it keeps up as the effect fades.
 
-    In one step the others would have to take over all of it at once, and events would jump; so would they if its
-    other effects gave way meanwhile.
+    In one step the others would have to take over all of it, and events would jump. They would also jump if its other
+    effects gave way meanwhile.
     """
     values = best.values
     for start in _at_once(explanation, fading, best):

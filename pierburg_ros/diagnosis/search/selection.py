@@ -39,7 +39,7 @@ def gain(smaller: Fit, larger: Fit) -> float:
 def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
     """Whether a larger explanation gains more than chance and the difference of simulators can give it.
 
-    One that fails on the validation samples, where the smaller does not, has only been bent to what trains.
+    It may not fail on the validation samples where the smaller one does not: then it fits the training samples alone.
     """
     more = larger.explanation.size - smaller.explanation.size
     if gain(smaller, larger) <= SIGNIFICANT * more + allowance(smaller, estimator.data) / larger.repetition:
@@ -48,7 +48,7 @@ def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
 
 
 def white(fit: Fit) -> bool:
-    """Whether an explanation leaves white noise, be it some percent more than estimated: the estimate is uncertain."""
+    """Whether an explanation leaves white noise, up to a tenth above the estimate, which is uncertain."""
     return fit.ratio < EXPLAINED and fit.repetition < WHITE
 
 
@@ -63,13 +63,13 @@ def complete(fit: Fit) -> bool:
 
 
 def accounts_for_all(fit: Fit, data: Data) -> bool:
-    """Whether an explanation with an effect leaves white noise, and beyond it no more than simulators may differ by."""
+    """Whether an explanation with an effect leaves white noise but for what simulators may differ by."""
     small = bool(fit.explanation.variants) and fit.misfit < fit.solution.residual.size + allowance(fit, data)
     return small and fit.repetition < WHITE
 
 
 def overlooks(fit: Fit, estimator: Estimator) -> bool:
-    """Whether an explanation without an effect accounts for the samples that train, but not for those that choose."""
+    """Whether an explanation without an effect accounts for training but not for validation samples."""
     if fit.explanation.variants or not adequate(fit):
         return False
     samples = int(np.count_nonzero(estimator.data.validation))

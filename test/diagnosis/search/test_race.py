@@ -1,4 +1,4 @@
-"""The race of prospects, with runners whose errors are given: who falls out, who gets a whole fit."""
+"""The race of candidates, with runners whose errors are given: who falls out, who gets a whole fit."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -8,8 +8,8 @@ import pytest
 from support.fits import made_up
 from support.recordings import NOMINAL
 
-from pierburg_ros.diagnosis.search.race import BRIEF, FIRST, winners
-from pierburg_ros.diagnosis.search.screening import Prospect
+from pierburg_ros.diagnosis.search.race import ROUNDS, winners
+from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
@@ -44,46 +44,46 @@ def by_effect(**ratios: float) -> Track:
     return Track(lambda explanation, _start, _forgiving: ratios[explanation.label])
 
 
-def prospect(addition: str | Variant, track: Track, base: Fit = LOST, starts: int = 1) -> Prospect:
+def candidate(addition: str | Variant, track: Track, base: Fit = LOST, starts: int = 1) -> Candidate:
     explanation = Explanation((addition,)) if isinstance(addition, str) else Explanation((), (addition,))
-    return Prospect(explanation, addition, track, base, tuple({"number": float(n)} for n in range(starts)))  # type: ignore[arg-type]
+    return Candidate(explanation, addition, track, base, tuple({"number": float(n)} for n in range(starts)))  # type: ignore[arg-type]
 
 
-def race(prospects: list[Prospect], known: float = np.inf, most: int | None = None) -> list[str]:
+def race(candidates: list[Candidate], known: float = np.inf, most: int | None = None) -> list[str]:
     """Labels of the winners, the best first, with `known` the error of the best explanation of that size so far."""
-    best = {each.estimator: known for each in prospects}
+    best = {each.estimator: known for each in candidates}
     with ThreadPoolExecutor(2) as pool:
-        return [fit.explanation.label for fit in winners(prospects, best, pool, lambda _: None, most)]
+        return [fit.explanation.label for fit in winners(candidates, best, pool, lambda _: None, most)]
 
 
 def test_the_best_come_first() -> None:
     track = by_effect(sensor_lag=2.0, viscous_friction=1.5, supply_sag=4.0)
-    assert race([prospect(variant, track) for variant in SMOOTH[:3]]) == [
+    assert race([candidate(variant, track) for variant in SMOOTH[:3]]) == [
         "viscous_friction", "sensor_lag", "supply_sag",
     ]  # fmt: skip
 
 
 def test_what_is_three_times_behind_falls_out_after_its_first_iterations() -> None:
     track = by_effect(sensor_lag=2.0, viscous_friction=6.5)
-    assert race([prospect(LAG, track), prospect(VISCOUS, track)]) == ["sensor_lag"]
-    assert [asked for asked in track.asked if asked[0] == "viscous_friction"] == [("viscous_friction", FIRST, False)]
+    assert race([candidate(LAG, track), candidate(VISCOUS, track)]) == ["sensor_lag"]
+    assert [asked for asked in track.asked if asked[0] == "viscous_friction"] == [("viscous_friction", ROUNDS // 2, False)]
 
 
 def test_what_is_behind_the_best_known_falls_out_too() -> None:
     track = by_effect(sensor_lag=4.0)
-    assert race([prospect(LAG, track)], known=1.2) == []
-    assert race([prospect(LAG, track)], known=2.0) == ["sensor_lag"]
+    assert race([candidate(LAG, track)], known=1.2) == []
+    assert race([candidate(LAG, track)], known=2.0) == ["sensor_lag"]
 
 
 def test_drifts_stay_however_far_behind() -> None:
     track = by_effect(sensor_lag=1.5, spring_preload=9.0)
-    assert race([prospect(LAG, track), prospect("spring_preload", track)]) == ["sensor_lag", "spring_preload"]
+    assert race([candidate(LAG, track), candidate("spring_preload", track)]) == ["sensor_lag", "spring_preload"]
 
 
 @pytest.mark.parametrize(("leader", "stays"), [(1.2, True), (1.01, False)])
 def test_what_jumps_stays_while_nothing_accounts_for_all(leader: float, stays: bool) -> None:
     track = by_effect(sensor_lag=leader, static_friction=9.0)
-    assert ("static_friction" in race([prospect(LAG, track), prospect(STICTION, track)])) == stays
+    assert ("static_friction" in race([candidate(LAG, track), candidate(STICTION, track)])) == stays
 
 
 def test_four_get_a_whole_fit_and_whoever_is_near_the_first() -> None:
@@ -91,27 +91,27 @@ def test_four_get_a_whole_fit_and_whoever_is_near_the_first() -> None:
     near = dict(zip(far, (2.0, 2.1, 2.2, 2.3, 2.5, 2.59, 2.61), strict=True))
     for ratios, count in ((far, 4), (near, 6)):
         track = by_effect(**ratios)
-        assert race([prospect(variant, track) for variant in SMOOTH]) == list(ratios)[:count]
+        assert race([candidate(variant, track) for variant in SMOOTH]) == list(ratios)[:count]
 
 
 def test_on_top_of_what_accounts_for_all_only_a_plain_gain_is_followed() -> None:
     """2000 samples at 1.02 are a chi2 of 2081: one at 1.015 gains 20, one at 1.018 only 8."""
     adequate = made_up(Explanation(), 1.02, NOMINAL)
     track = by_effect(sensor_lag=1.015, viscous_friction=1.018)
-    assert race([prospect(LAG, track, adequate), prospect(VISCOUS, track, adequate)]) == ["sensor_lag"]
+    assert race([candidate(LAG, track, adequate), candidate(VISCOUS, track, adequate)]) == ["sensor_lag"]
 
 
 def test_of_several_starts_the_best_stands_for_an_explanation() -> None:
     track = Track(lambda _explanation, start, _forgiving: 3.0 - start["number"])
     with ThreadPoolExecutor(1) as pool:
-        (won,) = winners([prospect(LAG, track, starts=2)], {track: np.inf}, pool, lambda _: None)  # type: ignore[dict-item]
+        (won,) = winners([candidate(LAG, track, starts=2)], {track: np.inf}, pool, lambda _: None)  # type: ignore[dict-item]
     assert won.ratio == pytest.approx(2.0)
     assert won.values["number"] == 1.0
 
 
 def test_only_so_many_enter_the_second_round_and_each_explanation_once() -> None:
     track = by_effect(sensor_lag=2.0, viscous_friction=2.2, supply_sag=2.1)
-    assert race([prospect(variant, track, starts=2) for variant in SMOOTH[:3]], most=2) == ["sensor_lag", "supply_sag"]
+    assert race([candidate(variant, track, starts=2) for variant in SMOOTH[:3]], most=2) == ["sensor_lag", "supply_sag"]
     # Six first looks, from two starts each, and two second ones.
     assert len(track.asked) == 6 + 2
 
@@ -120,14 +120,14 @@ def test_where_events_jump_a_fit_that_forgives_may_lead_further() -> None:
     """The forgiving fit passes on where it has ended, and the ordinary one from there is the better."""
 
     def ratio(_explanation: Explanation, start: dict[str, float], forgiving: bool) -> float:
-        return 1.5 if ("static_friction", BRIEF, True) in track.asked and not forgiving else 3.0
+        return 1.5 if ("static_friction", ROUNDS, True) in track.asked and not forgiving else 3.0
 
     track = Track(ratio)
     with ThreadPoolExecutor(1) as pool:
-        (won,) = winners([prospect(STICTION, track)], {track: np.inf}, pool, lambda _: None)  # type: ignore[dict-item]
+        (won,) = winners([candidate(STICTION, track)], {track: np.inf}, pool, lambda _: None)  # type: ignore[dict-item]
     assert won.ratio == pytest.approx(1.5)
     smooth = by_effect(sensor_lag=3.0)
-    race([prospect(LAG, smooth)])
+    race([candidate(LAG, smooth)])
     assert not any(forgiving for _, _, forgiving in smooth.asked)
 
 

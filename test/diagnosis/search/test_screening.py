@@ -7,7 +7,7 @@ import pytest
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.screening import Prospect, most_promising, screened
+from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -19,7 +19,7 @@ PRELOAD = Explanation(("spring_preload",))
 BOTH = {"sensor_lag.time_constant": 0.01, "spring_preload": 0.295}
 
 
-def prospects_on(data: Data, explanation: Explanation, glance: float = 24.0) -> list[Prospect]:
+def candidates_on(data: Data, explanation: Explanation, glance: float = 24.0) -> list[Candidate]:
     whole, first = Estimator(data, NOMINAL), Estimator(data.cut(glance), NOMINAL)
     with ThreadPoolExecutor(2) as pool:
         return screened(whole.fit(explanation), whole, first, drifting(NOMINAL), pool, lambda _: None)
@@ -27,18 +27,18 @@ def prospects_on(data: Data, explanation: Explanation, glance: float = 24.0) -> 
 
 @pytest.mark.parametrize("seed", [PRELOAD, Explanation((), (LAG,))], ids=lambda seed: seed.label)
 def test_what_is_missing_beside_a_part_of_the_truth_promises_most(seed: Explanation) -> None:
-    prospects = prospects_on(data_on(recording(BOTH)), seed)
-    (best,) = most_promising(prospects, 1)
+    candidates = candidates_on(data_on(recording(BOTH)), seed)
+    (best,) = most_promising(candidates, 1)
     assert best.explanation == Explanation(("spring_preload",), (LAG,))
     assert 0.95 < best.promise < 0.5 * best.base.ratio
 
 
 def test_every_addition_is_looked_at_once() -> None:
-    prospects = prospects_on(data_on(recording(BOTH, duration=6.0)), PRELOAD)
-    explanations = [prospect.explanation for prospect in prospects]
+    candidates = candidates_on(data_on(recording(BOTH, duration=6.0)), PRELOAD)
+    explanations = [candidate.explanation for candidate in candidates]
     assert len(set(explanations)) == len(explanations)
     assert all(explanation.size == 2 for explanation in explanations)
-    drifts = {prospect.addition for prospect in prospects if prospect.drifts}
+    drifts = {candidate.addition for candidate in candidates if candidate.drifts}
     assert drifts == set(drifting(NOMINAL)) - {"spring_preload"}
 
 
@@ -49,7 +49,7 @@ def test_a_change_in_the_middle_is_looked_for_alone_and_in_one_recording() -> No
         (data_on(first, second), Explanation(), False),
         (data_on(first), Explanation((), (LAG,)), False),
     ):
-        assert any(prospect.changes for prospect in prospects_on(data, seed)) == expected
+        assert any(candidate.changes for candidate in candidates_on(data, seed)) == expected
 
 
 def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
@@ -60,6 +60,6 @@ def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
     for begin, size in ((8.0, run.time.size), (0.0, 2000)):
         made = recording({}, duration=12.0)
         object.__setattr__(made, "measured", np.where(run.time < begin, made.measured, weak))
-        looked = {prospect.base.solution.residual.size for prospect in prospects_on(data_on(made), Explanation(), 4.0)}
+        looked = {candidate.base.solution.residual.size for candidate in candidates_on(data_on(made), Explanation(), 4.0)}
         assert max(looked) == pytest.approx(0.75 * 6000, rel=0.02)
         assert min(looked) == pytest.approx(0.75 * size, rel=0.02 if size == 6000 else 0.3)

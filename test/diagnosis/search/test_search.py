@@ -50,7 +50,7 @@ def test_a_pair_that_accounts_for_all_is_found_before_others_are_grown(pool: Exe
 
 @pytest.mark.search
 def test_a_spent_budget_ends_the_search_and_is_told() -> None:
-    """The first round alone looks at 60 prospects or so, and finds one quantity of three."""
+    """The first round alone looks at 60 candidates or so, and finds one quantity of three."""
     true = {"sensor_lag.time_constant": 0.012, "viscous_friction.coefficient": 0.03, "spring_preload": 0.32}
     data = data_on(recording(true, duration=8.0))
     found = search(data, NOMINAL, beam=Beam(budget=10))
