@@ -48,6 +48,7 @@ class Known(Estimator):
         self.nominal = NOMINAL
         self.given = given
         self.data = Data(NOMINAL.actuator, (), noise=1.0)
+        self.over = map
 
     def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()

@@ -81,7 +81,7 @@ class Grown(Search):
 
     def expand(self, seed: Fit) -> list[Fit]:
         self.seeds.append(seed.explanation)
-        self.looked_at += 1
+        self.tried += 1
         larger = (e for e in self.ratios if e.size == seed.explanation.size + 1)
         return [self.add(explanation) for explanation in larger]
 
