@@ -5,7 +5,7 @@ from glob import glob
 from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
-COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "prove", "tune")
+COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "inspect", "recover", "prove", "tune")
 ROS_WHEELS = [
     "ros-jazzy-rclpy[fastrtps]",
     "ros-jazzy-std-msgs",

@@ -12,7 +12,7 @@ from rich.console import Console
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.output import output_folder
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, taken_up, topics_of
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.plot import write_picture
 from pierburg_ros.errors import InputError
@@ -66,6 +66,7 @@ def identify(
         with Console(stderr=True).status("fitting whole recordings"):
             found = identify_recordings(start, measured, free or (), fix or ())
         write_results(folder, found, measured)
+    losses_first(console, measured)
     for recording in measured:
         if late := taken_up(recording):
             console.print(f"{recording.name}{late}", highlight=False, soft_wrap=True)

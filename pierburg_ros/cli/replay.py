@@ -13,7 +13,7 @@ from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.output import output_folder
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, taken_up, topics_of
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, taken_up, topics_of
 from pierburg_ros.comparison.compare import Comparison, compare
 from pierburg_ros.comparison.plot import write_page, write_picture
 from pierburg_ros.recording import read_recording, write_recording
@@ -39,7 +39,9 @@ def replay(
     with output_folder(output) as folder:
         comparison = compare(chosen, measured)
         write_replay(folder, comparison)
-    Console().print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    console = Console()
+    losses_first(console, [measured])
+    console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
 
 
 def write_replay(folder: Path, comparison: Comparison) -> None:
