@@ -22,10 +22,8 @@ from pierburg_ros.recording.formats.recover import is_whole, recover
 from pierburg_ros.recording.loss import LOSSES
 
 pytestmark = pytest.mark.ros
-SMALL = 400_000
-"""Bytes after which no file grows, as on a full disk; more than a recorder wants to begin with."""
-TINY = 100_000
-"""Bytes with which a recorder does not begin."""
+FULL = 30_000
+"""Bytes after which no file grows, as on a full disk; fewer than a recorder wants to begin with."""
 
 
 def limited(process, size):
@@ -67,7 +65,7 @@ def fill(graph, reports, numbers):
     """Send until the recorder says that its file is cut."""
 
     def cut():
-        send(graph, [next(numbers) for _ in range(200)])
+        send(graph, [next(numbers) for _ in range(500)])
         return any("is cut" in text for _, text, _ in reports())
 
     graph.until(cut, "the end of the disk")
@@ -81,9 +79,8 @@ def counted():
 def test_a_full_disk_is_said_at_once_the_file_marked_and_the_error_over_when_there_is_room(graph):
     reports = told(graph)
     process = recorder(graph, "output:=run.mcap")
-    limited(process, SMALL)
+    limited(process, FULL)
     fill(graph, reports, counted())
-    limited(process, TINY)
     answer = graph.call(SetBool, "recorder/record", SetBool.Request(data=True))
     assert not answer.success
     assert "cannot be written (File too large); make room" in answer.message
@@ -113,7 +110,7 @@ def test_a_rosbag2_folder_has_its_metadata_from_the_start_and_after_a_cut(graph)
     reports = told(graph)
     process = recorder(graph, "output:=bag", "form:=rosbag2")
     assert (graph.folder / "bag" / "metadata.yaml").exists()
-    limited(process, SMALL)
+    limited(process, FULL)
     fill(graph, reports, counted())
     limited(process, resource.RLIM_INFINITY)
     graph.until(lambda: reports()[-1][2]["file"].endswith("_1.mcap"), "a new file")
@@ -143,7 +140,7 @@ def test_two_recorders_that_start_in_one_second_write_two_files(graph):
 def test_a_split_that_finds_no_room_goes_on_in_the_old_file(graph):
     process = recorder(graph, "output:=run.mcap")
     send(graph, range(10))
-    limited(process, TINY)
+    limited(process, FULL)
     answer = graph.call(Trigger, "recorder/split", Trigger.Request())
     assert not answer.success
     send(graph, range(10, 20))
