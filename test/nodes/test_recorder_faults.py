@@ -1,8 +1,10 @@
-"""The recorder as a process when the disk does not take what it writes, and beside a plant that makes the time."""
+"""The recorder as a process when the disk does not take what it writes, and beside a source of time that waits for it."""
 
 import resource
 import signal
 import sys
+from threading import Event
+from types import SimpleNamespace
 
 import pytest
 
@@ -17,7 +19,8 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 from support.ros_graph import DEADLINE
 
-from pierburg_ros.recording import read_recording
+from pierburg_ros.nodes import messages
+from pierburg_ros.nodes.held_back import HeldBack
 from pierburg_ros.recording.formats.recover import is_whole, recover
 from pierburg_ros.recording.loss import LOSSES
 
@@ -188,43 +191,60 @@ def test_ten_seconds_of_messages_wait_for_a_recorder_that_is_stopped(graph):
     assert found == list(range(1, 5002))
 
 
-def simulated_run(graph):
-    """A plant that makes the time as fast as it can, and a recorder."""
-    process = graph.start("recorder", "output:=run.mcap", "use_sim_time:=true")
-    graph.until(lambda: "recorder" in graph.node.get_node_names(), "the recorder")
-    clock = graph.watch("/clock", Clock)
-    graph.start("plant", "simulated_time:=true", "time_factor:=0.0")
-    graph.until(lambda: len(clock) > 3000, "ticks")
-    return process, clock
+class Source:
+    """A source of time that ticks whenever it may."""
+
+    PERIOD = 2_000_000
+
+    def __init__(self, graph):
+        self.ticks = 0
+        self.warnings = []
+        diagnostics = SimpleNamespace(begin=lambda *said: self.warnings.append(said[2]), end=lambda _: None)
+        self.held_back = HeldBack(graph.node, diagnostics, Event())
+        self._publisher = graph.node.create_publisher(Clock, "/clock", 10_000)
+        graph.until(lambda: self._publisher.get_subscription_count() > 1, "readers of the clock")
+        graph.until(lambda: self.tick() and self.ticks > 3000, "ticks")
+
+    def waits(self):
+        """Whether the source is held back."""
+        return self.held_back.must_wait(self.ticks * self.PERIOD, self.PERIOD)
+
+    def tick(self):
+        """Tick up to 200 times, as long as it may; True in any case."""
+        for _ in range(200):
+            if self.waits():
+                break
+            self.ticks += 1
+            self._publisher.publish(messages.clock(self.ticks * self.PERIOD))
+        return True
 
 
 def test_the_source_of_time_waits_for_a_stopped_recorder_and_nothing_is_lost(graph):
-    process, clock = simulated_run(graph)
+    process = graph.start("recorder", "output:=run.mcap", "use_sim_time:=true")
+    source = Source(graph)
     process.send_signal(signal.SIGSTOP)
-    graph.until(stands(clock), "a plant that waits")
+    graph.until(lambda: source.tick() and source.waits(), "a source that waits")
+    standing = source.ticks
     process.send_signal(signal.SIGCONT)
-    standing = len(clock)
-    graph.until(lambda: len(clock) > standing + 3000, "ticks again")
+    graph.until(lambda: source.tick() and source.ticks > standing + 3000, "ticks again")
     graph.ended(process)
-    assert read_recording(graph.folder / "run.mcap").losses == ()
+    with (graph.folder / "run.mcap").open("rb") as stream:
+        found = [m.sequence for _, c, m in make_reader(stream).iter_messages() if c.topic == "/clock"]
+    assert len(found) > standing
+    assert found == list(range(found[0], found[-1] + 1))
 
 
-def test_a_recorder_that_is_killed_does_not_hold_the_time_up_for_ever(graph):
-    process, clock = simulated_run(graph)
+def test_a_recorder_that_leaves_is_not_waited_for_and_a_killed_one_not_for_ever(graph):
+    process = graph.start("recorder", "output:=run.mcap", "use_sim_time:=true")
+    source = Source(graph)
+    graph.ended(process)
+    graph.until(lambda: source.tick() and source.ticks > 6000, "ticks without a recorder")
+    process = graph.start("recorder", "output:=again.mcap", "use_sim_time:=true")
+    path = graph.folder / "again.mcap"
+    graph.until(lambda: source.tick() and path.exists() and path.stat().st_size > 10_000, "a second recorder")
     process.kill()
     graph.ended(process, by=None)
-    graph.until(stands(clock), "a plant that waits")
-    standing = len(clock)
-    graph.until(lambda: len(clock) > standing + 3000, "ticks again")
-
-
-def stands(clock):
-    """A condition: no tick has come for twenty looks in a row."""
-    seen = {"ticks": 0, "looks": 0}
-
-    def holds():
-        seen["looks"] = seen["looks"] + 1 if len(clock) == seen["ticks"] else 0
-        seen["ticks"] = len(clock)
-        return seen["looks"] > 20
-
-    return holds
+    graph.until(lambda: source.tick() and source.waits(), "a source that waits")
+    standing = source.ticks
+    graph.until(lambda: source.tick() and source.ticks > standing + 3000, "ticks again")
+    assert "a recorder does not follow and is not waited for" in source.warnings
