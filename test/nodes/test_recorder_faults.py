@@ -1,4 +1,4 @@
-"""The recorder as a process when the disk does not take what it writes, and beside a source of time that waits for it."""
+"""The recorder when the disk does not take what it writes, and beside a source of time that waits for it."""
 
 import resource
 import signal
