@@ -5,6 +5,7 @@ import json
 import pytest
 
 from pierburg_ros.cli.app import main
+from pierburg_ros.recording import read_recording
 
 
 def call(*arguments):
@@ -62,6 +63,6 @@ def test_recover_writes_beside_the_original_and_leaves_a_whole_file_alone(capsys
     cut.write_bytes(bag_with_a_gap.read_bytes()[:-50])
     assert call("recover", cut) == 0
     assert "part.recovered.mcap: 190 messages" in capsys.readouterr().out
-    assert call("replay", cut.with_name("part.recovered.mcap"), "--output", cut.parent / "out") == 0
+    assert read_recording(cut.with_name("part.recovered.mcap")).time.size == 100
     assert call("recover", cut) == 2
     assert "exists, expected a new name" in capsys.readouterr().err
