@@ -25,7 +25,7 @@ from pierburg_ros.processes import own_graph, running
 NODES = ("plant", "controller", "recorder")
 TOPICS = ("/hall_voltage", "/applied_duty", "/joint_states", "/duty", "/clock")
 STOPS = (0.2, 1.0, 5.0)  # s
-SETTLING = 5.0  # s, until all nodes know each other
+FLOWING = 60_000  # bytes of a recording in which messages flow
 QUIET = 2.0  # s between two stops, and after the last one
 
 
@@ -50,7 +50,8 @@ def run(victim: str | None, stops: tuple[float, ...], busy: int, time_kind: str)
         nodes["recorder"] = {**common, "output": recording}
         with load(busy), running(nodes, Path(name) / "log", own_graph()) as processes:
             by_name = dict(zip(nodes, processes, strict=True))
-            time.sleep(SETTLING)
+            while not recording.exists() or recording.stat().st_size < FLOWING:
+                time.sleep(0.1)
             for duration in stops:
                 stopped(by_name[victim], duration)
                 time.sleep(QUIET)

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.identify import Identification
@@ -62,6 +62,7 @@ def identify(
         with terminal(stderr=True).status("fitting whole recordings"):
             identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)
         identified.write_into(folder)
+    losses_first(console, measured)
     for recording in identified.recordings:
         if late := taken_up(recording):
             console.print(f"{recording.name}{late}", soft_wrap=True)

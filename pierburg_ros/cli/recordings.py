@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.recording import Recording
 
 TopicOption = Annotated[
     list[str] | None,
@@ -36,3 +38,10 @@ def topics_of(options: Sequence[str] | None) -> dict[str, str]:
             raise InputError(f"--topic found {option!r}, expected SIGNAL=NAME. Write --topic duty=/bench/pwm.")
         topics[signal] = name
     return topics
+
+
+def losses_first(console: Console, recordings: Sequence[Recording]) -> None:
+    """Print, before anything else, which of the recordings lack messages; nothing where none does."""
+    for recording in recordings:
+        if recording.warning:
+            console.print(f"{recording.name}: {recording.warning}", soft_wrap=True)

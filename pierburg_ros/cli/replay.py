@@ -9,7 +9,7 @@ import typer
 from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
@@ -29,9 +29,12 @@ def replay(
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
     """
     chosen = chosen_model(model, actuator)
-    comparison = compare(read(recording, time=time, topics=topics_of(topic)), chosen)
+    measured = read(recording, time=time, topics=topics_of(topic))
+    comparison = compare(measured, chosen)
     comparison.save(output)
-    terminal().print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    console = terminal()
+    losses_first(console, [measured])
+    console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
 
 
 def summary(result: Result) -> Table:

@@ -29,11 +29,12 @@ class HeldBack:
     def wait(self, now: int, period: int) -> bool:
         """Return when the tick at `now` [ns] may be followed by another one; whether that took any waiting."""
         waited = False
-        while self._must_wait(now, period) and not self._stopping.wait(LOOK):
+        while self.must_wait(now, period) and not self._stopping.wait(LOOK):
             waited = True
         return waited
 
-    def _must_wait(self, now: int, period: int) -> bool:
+    def must_wait(self, now: int, period: int) -> bool:
+        """Whether the tick at `now` [ns], ticks being `period` [ns] apart, is too far ahead of a recorder."""
         followers = list(self._followers.values())
         waits = [each.must_wait(now, period) for each in followers]
         if any(each.given_up for each in followers):

@@ -91,10 +91,10 @@ class LiveNode(Node):
         """From here on parameters can be set; names given at the start that do not exist are reported."""
         for name in self._given:
             self.diagnostics.refuse(self._unknown(name))
-        for reason in (*unread_files(self.get_fully_qualified_name(), sys.argv), *self._unused_overrides()):
-            self.diagnostics.refuse(reason)
         self.add_on_set_parameters_callback(self._on_set)
         self.create_subscription(ParameterMessage, "~/set_parameter", self._on_message, COMMANDS)
+        for reason in (*unread_files(self.get_fully_qualified_name(), sys.argv), *self._unused_overrides()):
+            self.diagnostics.refuse(reason)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all of them or none: the one way in for services, the topic and code."""

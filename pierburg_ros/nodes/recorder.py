@@ -75,10 +75,11 @@ class RecorderNode(LiveNode):
         """Write what has arrived and complete the file; InputError where the disk does not take it."""
         self._receiver.stop()
         self._time.leave()
-        if self.writer.file is not None:
-            print(self._end(), flush=True)
+        summary = self._end() if self.writer.file is not None else ""
         if self.writer.problem:
             raise InputError(self.writer.problem)
+        if summary:
+            print(summary, flush=True)
 
     def _begin(self) -> None:
         """Go on in a new file; InputError, and the old one goes on, where there can be none."""
@@ -93,11 +94,12 @@ class RecorderNode(LiveNode):
     def _end(self) -> str:
         """Write what has arrived, complete the file and say what is in it."""
         self._drain()
-        path, messages = self.writer.file.path, self.writer.file.messages
-        losses = self.topics.losses()
-        self.writer.end(losses)
-        lost = sum(lost for lost, _ in losses.values())
-        return f"{self.writer.problem or path}: {messages} messages, {lost} lost"
+        file, losses = self.writer.file, self.topics.losses()
+        if file is not None:
+            self.writer.end(losses)
+        if self.writer.problem:
+            return self.writer.problem
+        return f"{file.path}: {file.messages} messages, {sum(lost for lost, _ in losses.values())} lost"
 
     def _drain(self) -> None:
         self._receiver.turn()
@@ -149,10 +151,10 @@ class RecorderNode(LiveNode):
                 self._begin()
             elif not request.data and self.writer.file is not None:
                 response.message = self._end()
+            response.success = not self.writer.problem
+            response.message = response.message or str(self.counters()["file"])
             if not request.data:
                 self._rest()
-            response.success = not self.writer.problem
-            response.message = response.message or self.counters()["file"]
         except InputError as error:
             response.success, response.message = False, str(error)
         return response

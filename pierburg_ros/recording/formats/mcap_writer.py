@@ -36,9 +36,9 @@ TYPES = get_typestore(Stores.ROS2_JAZZY)
 class McapWriter:
     """Writes messages to `stream`; every topic is declared before its first message."""
 
-    def __init__(self, stream: IO[bytes], chunk_size: int = CHUNK_SIZE) -> None:
+    def __init__(self, stream: IO[bytes], chunk_size: int = CHUNK_SIZE, profile: str = "ros2") -> None:
         self.writer = Writer(stream, chunk_size=chunk_size, compression=CompressionType.ZSTD)
-        self.writer.start(profile="ros2", library=LIBRARY)
+        self.writer.start(profile=profile, library=LIBRARY)
         self.schemas: dict[str, int] = {}
         self.channels: dict[str, int] = {}
         self.topics: dict[str, dict[str, Any]] = {}
@@ -62,18 +62,26 @@ class McapWriter:
         offered = yaml.safe_dump(qos, sort_keys=False).strip()
         metadata = {"offered_qos_profiles": offered, "topic_type_hash": number}
         self.channels[topic] = self.writer.register_channel(topic, "cdr", self.schemas[type_name], metadata)
+        self.describe(topic, type_name, number, qos)
+
+    def describe(self, topic: str, type_name: str, type_hash: str, qos: list[dict[str, Any]]) -> None:
+        """Note what the metadata of a rosbag2 directory say of a topic."""
         self.topics[topic] = {
             "name": topic,
             "type": type_name,
             "serialization_format": "cdr",
             "offered_qos_profiles": qos,
-            "type_description_hash": number,
+            "type_description_hash": type_hash,
         }
-        self.counts[topic] = 0
+        self.counts.setdefault(topic, 0)
 
     def write(self, topic: str, data: bytes, log_time: int, publish_time: int, sequence: int) -> None:
         """Write one CDR message of a declared topic; times [ns]."""
         self.writer.add_message(self.channels[topic], log_time, data, publish_time, sequence)
+        self.count(topic, log_time)
+
+    def count(self, topic: str, log_time: int) -> None:
+        """Note a message for the metadata of a rosbag2 directory."""
         self.counts[topic] += 1
         self.first = log_time if self.first is None else min(self.first, log_time)
         self.last = max(self.last, log_time)

@@ -66,7 +66,9 @@ def test_the_best_come_first() -> None:
 def test_what_is_three_times_behind_falls_out_after_its_first_iterations() -> None:
     track = by_effect(sensor_lag=2.0, viscous_friction=6.5)
     assert race([candidate(LAG, track), candidate(VISCOUS, track)]) == ["sensor_lag"]
-    assert [asked for asked in track.asked if asked[0] == "viscous_friction"] == [("viscous_friction", ROUNDS // 2, False)]
+    assert [asked for asked in track.asked if asked[0] == "viscous_friction"] == [
+        ("viscous_friction", ROUNDS // 2, False)
+    ]
 
 
 def test_what_is_behind_the_best_known_falls_out_too() -> None:

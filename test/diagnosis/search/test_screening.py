@@ -60,6 +60,8 @@ def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
     for begin, size in ((8.0, run.time.size), (0.0, 2000)):
         made = recording({}, duration=12.0)
         object.__setattr__(made, "measured", np.where(run.time < begin, made.measured, weak))
-        looked = {candidate.base.solution.residual.size for candidate in candidates_on(data_on(made), Explanation(), 4.0)}
+        looked = {
+            candidate.base.solution.residual.size for candidate in candidates_on(data_on(made), Explanation(), 4.0)
+        }
         assert max(looked) == pytest.approx(0.75 * 6000, rel=0.02)
         assert min(looked) == pytest.approx(0.75 * size, rel=0.02 if size == 6000 else 0.3)

@@ -30,3 +30,21 @@ def test_the_clock_in_force_at_the_sending():
     time.reading(20, 4_000_000)
     assert [time.at(sent) for sent in (5, 10, 19)] == [2_000_000] * 3
     assert [time.at(sent) for sent in (20, 99)] == [4_000_000] * 2
+
+
+def test_after_a_stall_topics_that_arrive_one_after_another_come_out_in_order():
+    order = SourceOrder(0.1)
+    second = 1_000_000_000
+    for sent in range(0, 5 * second, second):
+        order.put(sent, ("first", sent), 5 * second)
+    assert order.due(5 * second) == []
+    for sent in range(0, 5 * second, second):
+        order.put(sent, ("second", sent), 5 * second + second // 5)
+    expected = [(topic, sent) for sent in range(0, 5 * second, second) for topic in ("first", "second")]
+    assert order.due(8 * second) == expected
+
+
+def test_the_past_of_a_latched_topic_holds_nothing_up():
+    order = SourceOrder(0.1)
+    order.put(0, "an hour ago", 3600 * 1_000_000_000)
+    assert order.due(3600 * 1_000_000_000) == ["an hour ago"]

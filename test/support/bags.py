@@ -1,11 +1,10 @@
 """Recordings as a foreign writer leaves them: encoded by rosbags, framed by the mcap library."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pytest
 from mcap.writer import Writer
 from rosbags.typesys import Stores, get_typestore
 
@@ -83,36 +82,3 @@ def write_mcap(path: Path, messages: Iterable[Message], chunk_size: int, empty: 
             )
         writer.finish()
     return path
-
-
-@pytest.fixture
-def write_bag(tmp_path: Path) -> Callable[..., Path]:
-    """Writes a list of messages to an MCAP file of a given name."""
-
-    def write(messages: Iterable[Message], name: str = "run.mcap", chunk_size: int = 4096, **empty: str) -> Path:
-        topics = {f"/{topic}": kind for topic, kind in empty.items()}
-        return write_mcap(tmp_path / name, messages, chunk_size, topics)
-
-    return write
-
-
-@pytest.fixture
-def message() -> type[Message]:
-    """The message form that `write_bag` takes."""
-    return Message
-
-
-@pytest.fixture
-def run() -> Callable[..., list[Message]]:
-    """Samples at 100 Hz as a graph without stamps records them: Hall voltage k, then duty k / 1000."""
-
-    def messages(count: int = 50, start: float = 1000.0, **topics: str) -> list[Message]:
-        hall, duty = topics.get("hall", "/hall_voltage"), topics.get("duty", "/duty")
-        found = []
-        for k in range(count):
-            time = start + 0.01 * k
-            found.append(Message(hall, "float", time, time, k, float(k)))
-            found.append(Message(duty, "float", time + 0.001, time + 0.001, k, k / 1000))
-        return found
-
-    return messages

@@ -1,0 +1,54 @@
+"""Signals are read from whoever sends them, and their quality of service can be overridden."""
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Float64
+
+from pierburg_ros.nodes.signals import Signal
+
+pytestmark = pytest.mark.ros
+
+
+def reliabilities(graph, topic):
+    """What the readers of a topic ask for."""
+    return [info.qos_profile.reliability for info in graph.node.get_subscriptions_info_by_topic(topic)]
+
+
+def test_a_best_effort_publisher_is_heard(graph):
+    heard = []
+    Signal(graph.node, Float64, "hall_voltage", lambda message: heard.append(message.data))
+    best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    publisher = graph.node.create_publisher(Float64, "hall_voltage", best_effort)
+
+    def come():
+        publisher.publish(Float64(data=0.42))
+        return heard
+
+    graph.until(come, "a sample")
+    graph.until(lambda: reliabilities(graph, "/hall_voltage") == [ReliabilityPolicy.BEST_EFFORT], "one weaker reader")
+
+
+def test_a_reliable_publisher_keeps_its_reliable_reader(graph):
+    heard = []
+    signal = Signal(graph.node, Float64, "hall_voltage", lambda message: heard.append(message.data))
+    graph.publish("hall_voltage", Float64(data=0.42))
+    graph.until(lambda: heard, "a sample")
+    assert signal.publishers == 1
+    assert reliabilities(graph, "/hall_voltage") == [ReliabilityPolicy.RELIABLE]
+
+
+def test_overrides_hold_and_one_for_a_topic_that_does_not_exist_is_named(graph):
+    process = graph.start(
+        "recorder",
+        "output:=run.mcap",
+        "qos_overrides./recorder/set_parameter.subscription.reliability:=best_effort",
+        "qos_overrides./nowhere.publisher.depth:=7",
+    )
+    topic = "/recorder/set_parameter"
+    graph.until(lambda: reliabilities(graph, topic) == [ReliabilityPolicy.BEST_EFFORT], "the override")
+    _, output = graph.ended(process)
+    assert "recorder has no topic /nowhere for qos_overrides" in output
+    assert "no topic /recorder/set_parameter" not in output
