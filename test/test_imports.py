@@ -32,6 +32,7 @@ ROS = {
     "diagnostic_msgs",
     "launch",
     "launch_ros",
+    "lifecycle_msgs",
     "rcl_interfaces",
     "rclpy",
     "rosgraph_msgs",

@@ -51,7 +51,7 @@ def test_a_closed_loop_replays_to_the_sensors_noise(recorded):
 
 
 def test_a_recorded_duty_played_back_drives_the_plant(recorded, tmp_path):
-    from ros_graph import Graph
+    from support.ros_graph import Graph
 
     folder = tmp_path / "playback"
     folder.mkdir()

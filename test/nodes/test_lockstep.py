@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.plant_time import Lockstep
+from pierburg_ros.nodes.core.plant_time import Lockstep
 
 TICKS = 500
 
@@ -45,7 +45,7 @@ def played(graph, setpoints):
 
 @pytest.mark.ros
 def test_a_run_repeats_bit_by_bit(domain, tmp_path):
-    from ros_graph import Graph
+    from support.ros_graph import Graph
 
     setpoints = tmp_path / "setpoints.csv"
     setpoints.write_text("time,setpoint\n0,0.2\n0.3,0.9\n0.6,0.4\n")
@@ -123,8 +123,8 @@ def test_a_stray_duty_before_the_sample_is_no_reply():
 
 
 def test_nobody_answers(monkeypatch):
-    monkeypatch.setattr("pierburg_ros.nodes.plant_time.REPEAT", 0.05)
-    monkeypatch.setattr("pierburg_ros.nodes.plant_time.GIVE_UP", 0.2)
+    monkeypatch.setattr("pierburg_ros.nodes.core.plant_time.REPEAT", 0.05)
+    monkeypatch.setattr("pierburg_ros.nodes.core.plant_time.GIVE_UP", 0.2)
     partner = Partner([0] * 10)
     with pytest.raises(InputError, match="No duty came"):
         partner.lockstep.exchange(partner.send)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from pierburg_ros.errors import InputError
 
@@ -35,10 +36,10 @@ class Declaration:
             return self._of_type(value, type(self.default))
         if isinstance(self.default, float) and type(value) is int:
             value = float(value)
-        number = self._of_type(value, type(self.default))
+        number: Any = self._of_type(value, type(self.default))
         if not (math.isfinite(number) and self.minimum <= number <= self.maximum):
             raise InputError(f"{self.name} is {number:g}; expected {self._range()}.")
-        return number
+        return number  # type: ignore[no-any-return]
 
     def _of_type(self, value: object, expected: type) -> Value:
         if expected is list and isinstance(value, tuple):
