@@ -53,6 +53,7 @@ class GuardedController:
         self._time: int | None = None
         self._duty = self._duty_at_loss = 0.0
         self._lost_at = 0
+        self._bad_since: int | None = None
         self._good_samples = 0
 
     def configure(self, values: Mapping[str, Any]) -> None:
@@ -101,20 +102,15 @@ class GuardedController:
         self._plausibility.forget()
         self._frozen.forget()
         self._shaft.reset()
-        self.lost = self.objection = self.last_good = self._time = None
+        self.lost = self.objection = self.last_good = self._time = self._bad_since = None
         self._duty = 0.0
-
-    def since_good(self) -> float | None:
-        """Time between the last sample and the last good one [s]; None before the first."""
-        if self._time is None or self.last_good is None:
-            return None
-        return (self._time - self.last_good) * 1e-9
 
     def _given(self, duty: float) -> float:
         return duty if self.loop.controller.enabled else 0.0
 
     def _of_good_sample(self, voltage: float, time: int) -> float:
         before, self.last_good = self.last_good, time
+        self._bad_since = None
         self._shaft.take(voltage, 0.0 if before is None else (time - before) * 1e-9)
         if self.lost is not None:
             self._good_samples += 1
@@ -131,9 +127,9 @@ class GuardedController:
     def _of_bad_sample(self, objection: Objection, time: int) -> float:
         self.counts.passed_over += 1
         self._good_samples = 0
-        if self.last_good is None:
-            self.last_good = time
-        if self.lost is None and time - self.last_good > self._timeout:
+        if self._bad_since is None:
+            self._bad_since = time
+        if self.lost is None and time - self._bad_since >= self._timeout:
             self._lose(objection, time)
             self._plausibility.forget()
         elif self.lost is not None:
