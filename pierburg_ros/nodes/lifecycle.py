@@ -32,6 +32,11 @@ class ManagedNode(LifecycleNodeMixin, LiveNode):
             self.trigger_configure()
             self.trigger_activate()
 
+    def destroy_node(self) -> None:
+        """Leave the graph, which the state machine otherwise keeps the node on."""
+        super().destroy_node()
+        self._state_machine.destroy_when_not_in_use()
+
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The transition to active."""
         self.is_active = True
