@@ -53,13 +53,14 @@ def test_full_duty_against_a_stop_for_30_s_is_limited_and_then_ended(winding):
     guarded = duties[round(2.5 / PERIOD) : round(26.0 / PERIOD)]
     assert max(winding.current(duty, 0.0) for duty in guarded) <= 1.01 * LIMITS.rated_current
     assert duties[round((2.5 + LIMITED_FOR) / PERIOD)] == 0.0
-    assert winding.heat < 1.0
+    assert winding.heat < 1.01
 
 
 def test_after_cooling_it_may_be_used_again(winding):
-    duties = stalled(winding, 1.0, 40.0)
-    off = max(k for k, duty in enumerate(duties) if duty == 0.0) * PERIOD
-    assert off == pytest.approx(2.36 + LIMITED_FOR + 20.0 * math.log(2.0), abs=0.3)
+    duties = stalled(winding, 1.0, 30.0)
+    off = [k for k, duty in enumerate(duties) if k > 0 and duty == 0.0]
+    assert off[-1] - off[0] == len(off) - 1
+    assert off[-1] * PERIOD == pytest.approx(2.36 + LIMITED_FOR + 20.0 * math.log(2.0), abs=0.3)
 
 
 def test_below_a_third_of_the_stall_current_nothing_is_ever_limited(winding):
