@@ -81,6 +81,14 @@ def test_ros_is_imported_in_nodes_alone(source):
     assert unit(source) == "nodes" or not roots & ROS
 
 
+@pytest.mark.parametrize("source", sorted((PACKAGE / "nodes" / "core").rglob("*.py")), ids=lambda path: path.stem)
+def test_the_core_of_the_nodes_knows_neither_ros_nor_the_nodes_around_it(source):
+    names = set(imported(source))
+    assert not {name.split(".")[0] for name in names} & ROS
+    nodes = {name for name in names if name.startswith("pierburg_ros.nodes")}
+    assert all(name.startswith("pierburg_ros.nodes.core") for name in nodes)
+
+
 def test_every_part_of_the_package_has_its_place_in_the_rule():
     parts = {unit(source) for source in SOURCES} - {"__init__"}
     assert parts <= set(ALLOWED)
