@@ -18,6 +18,8 @@ sliding friction are common in dry gears; the third part pays for a winding that
 RATED_SHARE = 1.0 / 3.0
 """Continuous current as a share of the stall current at the nominal supply. Assumption: no data sheet of the motor is
 known. It lies above what the valve needs for moving at its strongest spring torque (0.87 A of 3.26 A)."""
+LEAST_SUPPLY = 1e-6
+"""A supply below this [V] counts as this: no duty moves the shaft then, and none is said to."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ def limits_of(actuator: Actuator, values: Mapping[str, float] | None = None) -> 
     resistance, supply = value["armature_resistance"], value["supply_voltage"]
     driven = max(abs(weakest), abs(strongest)) * resistance / constant**2
     friction = FRICTION_MARGIN * value["coulomb_friction"]
-    per_torque = resistance / (constant * supply)
+    per_torque = resistance / (constant * max(supply, LEAST_SUPPLY))
     return Limits(
         SPEED_MARGIN * (supply / constant + driven),
         resistance,

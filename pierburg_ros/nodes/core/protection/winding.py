@@ -55,7 +55,7 @@ class Winding:
         """The duty that the winding bears at a shaft speed [rad/s]; `duty` itself where nothing is limited."""
         if self.off:
             return 0.0
-        if not self.limited:
+        if not self.limited or self.limits.supply_voltage <= 0.0:
             return duty
         induced = self.limits.torque_constant * speed / self.limits.supply_voltage
         reach = self.rated_current * self.limits.resistance / self.limits.supply_voltage

@@ -32,3 +32,9 @@ def test_no_duty_moves_the_shaft_faster_than_its_top_speed():
 def test_what_holds_the_valve_open_is_less_than_the_rated_current():
     strongest = 0.29 + 0.1419 * ACTUATOR.upper_stop + 0.2007
     assert strongest / LIMITS.torque_constant < LIMITS.rated_current < LIMITS.stall_current
+
+
+def test_without_a_supply_no_duty_is_said_to_move_the_shaft():
+    limits = limits_of(ACTUATOR, {"supply_voltage": 0.0})
+    assert limits.closes_below < -1.0
+    assert limits.opens_above > 1.0
