@@ -27,6 +27,7 @@ ROS_WHEELS = [
     "ros-jazzy-rosgraph-msgs",
     "ros-jazzy-rcl-interfaces",
     "ros-jazzy-builtin-interfaces",
+    "ros-jazzy-lifecycle-msgs",
 ]
 TEST_TOOLS = [
     "pytest",

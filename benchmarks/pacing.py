@@ -21,7 +21,7 @@ from machine import machine, write_section
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from std_msgs.msg import Float64
 
-from pierburg_ros.nodes.pacing import Pacer
+from pierburg_ros.nodes.core.pacing import Pacer
 from pierburg_ros.nodes.plant import SWITCH_INTERVAL
 from pierburg_ros.processes import end, own_graph
 

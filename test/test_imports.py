@@ -72,6 +72,7 @@ ROS = {
     "diagnostic_msgs",
     "launch",
     "launch_ros",
+    "lifecycle_msgs",
     "rcl_interfaces",
     "rclpy",
     "rosgraph_msgs",
@@ -152,6 +153,14 @@ def test_imports_point_down_inside_each_part(source):
 def test_ros_is_imported_in_nodes_alone(source):
     roots = {name.split(".")[0] for name in imported(source)}
     assert unit(source) == "nodes" or not roots & ROS
+
+
+@pytest.mark.parametrize("source", sorted((PACKAGE / "nodes" / "core").rglob("*.py")), ids=lambda path: path.stem)
+def test_the_core_of_the_nodes_knows_neither_ros_nor_the_nodes_around_it(source):
+    names = set(imported(source))
+    assert not {name.split(".")[0] for name in names} & ROS
+    nodes = {name for name in names if name.startswith("pierburg_ros.nodes")}
+    assert all(name.startswith("pierburg_ros.nodes.core") for name in nodes)
 
 
 def test_every_part_of_the_package_has_its_place_in_the_rule():

@@ -1,7 +1,8 @@
 """The control law of Fig. 6, compiled: setpoint and Hall voltage in, duty out, one call a sample.
 
 The node and the simulation call this same code. `settings` is the record of `Settings`, `state` that of
-`new_state`; everything the law remembers between samples is in the latter.
+`new_state`; everything the law remembers between samples is in the latter. Whatever finite numbers come in,
+the state stays finite: `LARGEST` and `LONGEST` bound what enters it, far beyond what a sensor or a clock gives.
 """
 
 from __future__ import annotations
@@ -15,6 +16,11 @@ from pierburg_ros.control.fuzzy import duty_of, pi_output_for
 from pierburg_ros.kernel import kernel
 
 SHORTEST = 1e-6  # samples closer than this [s] leave derivative and integrator as they are
+LARGEST = 1e6
+"""Errors [V] beyond this count as this: 10,000 times the widest range of a sensor that can be set, and small
+enough that its quotient by `SHORTEST` and its product with every gain are finite."""
+LONGEST = 1e3
+"""Longer times between two samples [s] count as this: a quarter of an hour is no sampling."""
 STATE = [
     ("started", np.bool_),  # a first sample has been seen
     ("saturated", np.bool_),  # the PI output is past its support, or the duty at a limit
@@ -53,7 +59,8 @@ def step(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: fl
 @kernel
 def follow(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: float) -> None:
     """Bring error, derivative of the error and PI output up to a sample."""
-    error = voltage(settings, setpoint) - hall_voltage
+    error = min(max(voltage(settings, setpoint) - hall_voltage, -LARGEST), LARGEST)
+    dt = min(dt, LONGEST)
     if state.started and dt >= SHORTEST:
         slope = (error - state.error) / dt
         state.derivative += (slope - state.derivative) * dt / (dt + settings.derivative_time_constant)

@@ -69,6 +69,7 @@ class Controller:
             self._enabled = enabled
             self.restart()
 
-    def restart(self) -> None:
-        """Forget the past: the next sample counts as the first, and the duty leaves from 0."""
+    def restart(self, duty: float = 0.0) -> None:
+        """Forget the past: the next sample counts as the first, and the duty leaves from `duty`."""
         self._state = law.new_state()
+        self._state.duty = duty

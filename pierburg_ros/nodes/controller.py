@@ -2,89 +2,122 @@
 
 from __future__ import annotations
 
-import math
+import time
 from collections.abc import Mapping
 from typing import Any
 
 from rclpy.clock import Clock, ClockType
-from std_msgs.msg import Bool, Float64
+from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import Controller, Setpoints, Settings, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW
+from pierburg_ros.nodes.controller_outputs import Outputs
+from pierburg_ros.nodes.controller_place import Place
+from pierburg_ros.nodes.controller_reports import ControllerReports
+from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW, PROTECTION, WINDING
+from pierburg_ros.nodes.core.guarded_controller import GuardedController
 from pierburg_ros.nodes.core.sampled_controller import SampledController
-from pierburg_ros.nodes.diagnostics import ERROR
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED
+from pierburg_ros.nodes.lifecycle import ManagedNode
+from pierburg_ros.nodes.qos import COMMANDS
 from pierburg_ros.nodes.running import run
 from pierburg_ros.nodes.sample_clock import SampleClock
 from pierburg_ros.nodes.signals import Signal
 
 STATUS_PERIOD = 0.1
 """Time between two publications of an unchanged `active_setpoint` [s]."""
+FAULT_PERIOD = 0.01
+"""Time between two duties [s] that answer a silent sensor by `hold` or `close`: well within a plant's time-out."""
 
 
-class ControllerNode(LiveNode):
-    """Answers Hall samples with duties; a lost sensor is answered with duty 0."""
+class ControllerNode(ManagedNode):
+    """Answers Hall samples with duties; a lost angle is answered with duty 0, or as `on_fault` says."""
 
     def __init__(self) -> None:
         super().__init__("controller")
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._duty = self.create_publisher(Float64, "duty", PUBLISHED)
-        self._active_setpoint = self.create_publisher(Float64, "active_setpoint", PUBLISHED)
+        self.outputs: Outputs | None = None
+        self.guarded: GuardedController | None = None
+        self._place = Place(self, time.monotonic())
         self._watchdog = self.create_timer(3600.0, self._on_silence, clock=steady)
-        self.loop: SampledController | None = None
-        self.samples = 0
+        self._watchdog.cancel()
         self.declare(LAW)
-        settings = self._settings(self.values)
-        self.loop = SampledController(
-            Controller(settings), Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed)
-        )
-        self.loop.prepare()
-        self.declare(CONTROLLER)
-        if self.values["setpoint_file"]:
-            self.loop.schedule = read_setpoint_file(self.values["setpoint_file"])
-        self._internals = {
-            name: self.create_publisher(kind, f"~/{name}", PUBLISHED) for name, kind in INTERNALS.items()
-        }
+        self.declare((*CONTROLLER, *PROTECTION, *WINDING))
+        self.guarded = self._prepared()
+        self._reports = ControllerReports(self.diagnostics, self.guarded)
         self._sample_clock = SampleClock(self)
         self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
+        self._silent_since: float | None = None
         self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
         self.create_service(SetBool, "~/enable", self._on_enable)
-        self.create_timer(STATUS_PERIOD, self._publish_setpoint, clock=steady)
+        self.create_timer(STATUS_PERIOD, self._look, clock=steady)
         self.open_parameters()
 
     def accept(self, changes: Mapping[str, Any]) -> None:
         """Put settings in force without a jump of the duty; a setpoint counts like one from the topic."""
-        settings = self._settings(changes)
-        if self.loop is None:
+        settings = self._settings({**self.values, **changes})
+        if self.guarded is None:
+            setpoint = changes.get("setpoint", settings.angle_closed)
+            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(setpoint)
             return
+        loop = self.guarded.loop
         if "setpoint" in changes:
-            self.loop.setpoints.offer(changes["setpoint"])
+            loop.setpoints.offer(changes["setpoint"])
             self._publish_setpoint()
-        if settings != self.loop.controller.settings:
-            self.loop.controller.change(settings)
-            self.loop.setpoints.lower_stop = settings.angle_closed
-            self.loop.setpoints.upper_stop = settings.angle_open
-        if "hall_timeout" in changes:
+        if settings != loop.controller.settings:
+            loop.controller.change(settings)
+            loop.setpoints.lower_stop = settings.angle_closed
+            loop.setpoints.upper_stop = settings.angle_open
+        self.guarded.configure({**self.values, **changes})
+        if "hall_timeout" in changes and self._reports.good_samples.count:
             self._watch(changes["hall_timeout"])
+
+    def activate(self) -> None:
+        """Look for a place among the controllers of the graph; duties begin when it is found."""
+        self._place.ask_anew()
+
+    def deactivate(self) -> None:
+        """Leave the valve to its spring, and the graph to others."""
+        self._stop_sending()
+        self._place.leave()
 
     def close(self) -> None:
         """Leave the valve to its spring."""
-        self._duty.publish(messages.number(0.0))
+        self._stop_sending()
 
     def counters(self) -> Mapping[str, object]:
-        """Samples answered so far."""
-        return {"samples": self.samples, "enabled": self.loop is None or self.loop.controller.enabled}
+        """Samples answered so far, and whether they are."""
+        if self.guarded is None:
+            return {}
+        return {
+            "samples": self.guarded.counts.samples,
+            "enabled": self.guarded.loop.controller.enabled,
+            "active": self.is_active,
+            "sending": self.outputs is not None,
+        }
+
+    def _prepared(self) -> GuardedController:
+        """The loop compiled and behind its protections, the setpoint where it was told to be."""
+        actuator = read_actuator(self.values["actuator"])
+        self.diagnostics.hardware_id = self.values["hardware_id"] or actuator.name
+        settings = self._settings(self.values)
+        closed, opened = settings.angle_closed, settings.angle_open
+        loop = SampledController(Controller(settings), Setpoints(closed, opened, closed))
+        loop.prepare()
+        loop.setpoints.offer(self.values["setpoint"])
+        if self.values["setpoint_file"]:
+            loop.schedule = read_setpoint_file(self.values["setpoint_file"])
+        return GuardedController(loop, actuator, self.values)
 
     def _settings(self, changes: Mapping[str, Any]) -> Settings:
         """The settings of the law with some changed; InputError where they do not go together."""
-        current = self.loop.controller.settings if self.loop else Settings()
+        current = self.guarded.loop.controller.settings if self.guarded else Settings()
         return current.with_values({each.name: changes[each.name] for each in LAW if each.name in changes})
 
     def _watch(self, timeout: float) -> None:
+        """Expect the next sample within `timeout` [s]; 0: never mind."""
         if timeout > 0.0:
             self._watchdog.timer_period_ns = round(timeout * messages.SECOND)
             self._watchdog.reset()
@@ -92,53 +125,78 @@ class ControllerNode(LiveNode):
             self._watchdog.cancel()
 
     def _on_hall_voltage(self, message: Float64, info: dict[str, int]) -> None:
-        if not self._watchdog.is_canceled():
-            self._watchdog.reset()
-        self.diagnostics.end("hall_timeout")
-        if math.isfinite(message.data):
-            self.diagnostics.end("hall_voltage_not_finite")
-        else:
-            self.diagnostics.begin("hall_voltage_not_finite", ERROR, f"Hall voltage {message.data}: last duty kept")
-        time = self._sample_clock.at(info, self.loop.last)
-        if time is None:
+        self._reports.samples.event(time.monotonic())
+        sampled = self._sample_clock.at(info)
+        if self.outputs is None:
             return
-        self.samples += 1
-        setpoint = self.loop.setpoints.active
-        self._duty.publish(messages.number(self.loop.duty(message.data, time)))
-        if self.loop.setpoints.active != setpoint:
+        if sampled is None:
+            self._reports.no_clock()
+            return
+        before, setpoint = self.guarded.counts.samples, self.guarded.loop.setpoints.active
+        self.outputs.duty(self.guarded.duty(message.data, sampled))
+        is_new = self.guarded.counts.samples != before
+        if is_new and self.guarded.objection is None:
+            self._silent_since = None
+            self._watch(self.values["hall_timeout"])
+        self._reports.sample(is_new)
+        if self.guarded.loop.setpoints.active != setpoint:
             self._publish_setpoint()
         if self.values["publish_internals"]:
-            self._publish_internals()
+            self.outputs.internals(self.guarded.loop.controller.internals)
 
     def _on_silence(self) -> None:
+        now = time.monotonic()
+        if self._silent_since is None:
+            self._silent_since = now
+            self._watch(self.values["hall_timeout"] if self.values["on_fault"] == "release" else FAULT_PERIOD)
+        duty = self.guarded.silence(self._silence(now), now - self._silent_since)
+        self._reports.fault()
+        if self.outputs is not None:
+            self.outputs.duty(duty)
+
+    def _silence(self, now: float) -> str:
+        """What kind of silence it is."""
         timeout = self.values["hall_timeout"]
-        self.diagnostics.begin("hall_timeout", ERROR, f"no Hall sample for {timeout:g} s: duty 0")
-        self.loop.interrupt()
-        self._duty.publish(messages.number(0.0))
+        age = self._reports.samples.age(now)
+        if age is None or age >= 0.5 * timeout:
+            return f"no Hall sample for {timeout:g} s"
+        if self._sample_clock.is_simulated:
+            return f"/clock stands still: no new Hall sample for {timeout:g} s"
+        return f"no Hall sample that can be true for {timeout:g} s"
 
     def _on_setpoint(self, message: Float64) -> None:
         try:
-            self.loop.setpoints.offer(message.data)
+            self.guarded.loop.setpoints.offer(message.data)
         except InputError as error:
             self.diagnostics.refuse(str(error))
         self._publish_setpoint()
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        self.loop.controller.enable(request.data)
+        self.guarded.loop.controller.enable(request.data)
         response.success, response.message = True, "enabled" if request.data else "disabled: duty 0"
         return response
 
+    def _look(self) -> None:
+        """Now and then: who sends, what is in force, what is late."""
+        if self.is_active:
+            may = self._place.may_send(self.outputs, self._reports.samples, self.values["exclusive"])
+            if may and self.outputs is None:
+                self.guarded.restart()
+                self.outputs = Outputs(self)
+            elif not may and self.outputs is not None:
+                self._stop_sending()
+        self._publish_setpoint()
+        self._reports.look(self.outputs is not None)
+
+    def _stop_sending(self) -> None:
+        self._watchdog.cancel()
+        if self.outputs is not None:
+            self.outputs.close()
+            self.outputs = None
+
     def _publish_setpoint(self) -> None:
-        self._active_setpoint.publish(messages.number(self.loop.setpoints.active))
-
-    def _publish_internals(self) -> None:
-        internals = self.loop.controller.internals
-        for name, publisher in self._internals.items():
-            publisher.publish(INTERNALS[name](data=getattr(internals, name)))
-
-
-INTERNALS = {"error": Float64, "pi_output": Float64, "derivative": Float64, "saturated": Bool}
-"""What `publish_internals` publishes: the internals of the control law and their message types."""
+        if self.outputs is not None:
+            self.outputs.setpoint(self.guarded.loop.setpoints.active)
 
 
 def main() -> None:

@@ -15,15 +15,19 @@ from std_srvs.srv import Trigger
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes import messages
+from pierburg_ros.nodes.core.controller_parameters import WINDING
+from pierburg_ros.nodes.core.pacing import Pacer
 from pierburg_ros.nodes.core.physics import Physics, chosen_model
 from pierburg_ros.nodes.core.plant_parameters import PLANT
+from pierburg_ros.nodes.core.plant_time import Lockstep, tick_as_time_source, tick_by_clock
+from pierburg_ros.nodes.core.protection.limits import limits_of
+from pierburg_ros.nodes.core.protection.winding import Winding
 from pierburg_ros.nodes.core.sampled_plant import Sample, SampledPlant
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
-from pierburg_ros.nodes.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.heat_report import HeatReport
 from pierburg_ros.nodes.held_back import HeldBack
-from pierburg_ros.nodes.pacing import Pacer
 from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.plant_time import Lockstep, tick_as_time_source, tick_by_clock
+from pierburg_ros.nodes.plant_reports import PlantReports
 from pierburg_ros.nodes.qos import PUBLISHED
 from pierburg_ros.nodes.running import run
 from pierburg_ros.nodes.signals import Signal
@@ -41,8 +45,10 @@ class PlantNode(LiveNode):
         self.pacer = Pacer(0.0)
         self._thread = ThreadPoolExecutor(1, "ticks")
         self.plant: SampledPlant | None = None
-        self.declare(PLANT)
+        self.declare((*PLANT, *WINDING))
         self.plant = self._sampled_plant()
+        self._reports = PlantReports(self)
+        self._heat = HeatReport(self.diagnostics, self.plant.winding)
         self.declare(self.plant.physics.declarations())
         self.lockstep = Lockstep(self.stopping) if self.values["lockstep"] else None
         self._clock_publisher = self.create_publisher(Clock, "/clock", PUBLISHED) if self.is_time_source else None
@@ -70,11 +76,16 @@ class PlantNode(LiveNode):
             physics.noise = changes.get("hall_voltage_noise", physics.noise)
             sensor = self.plant.sensor
             sensor.time_constant = changes.get("velocity_time_constant", sensor.time_constant)
+            self._protect(self.plant.winding, {**self.values, **changes})
 
     def counters(self) -> Mapping[str, object]:
         """Ticks so far and those left out."""
         ticks = self.plant.ticks if self.plant else 0
         return {"ticks": ticks, "skipped_ticks": self.pacer.skipped}
+
+    def now(self) -> int:
+        """What the node's clock says [ns]."""
+        return int(self.get_clock().now().nanoseconds)
 
     def follows(self, time: int) -> bool:
         """Whether `time` [ns] lies after the last tick; a clock set back counts from where it is."""
@@ -87,10 +98,8 @@ class PlantNode(LiveNode):
         timeout = self.values["command_timeout"]
         with self.lock:
             sample = self.plant.tick(time, timeout)
-        if self.plant.duty.lost(time, timeout):
-            self.diagnostics.begin("command_timeout", WARN, f"no duty for {timeout:g} s: duty 0")
-        else:
-            self.diagnostics.end("command_timeout")
+        self._reports.timeout(self.plant.duty.lost(time, timeout), timeout)
+        self._heat.tell()
         return sample
 
     def publish(self, sample: Sample, with_clock: bool = False) -> None:
@@ -126,27 +135,27 @@ class PlantNode(LiveNode):
         model = chosen_model(values["actuator"], values["model"])
         self.get_logger().info("preparing the simulator, which is compiled at its first start on a machine")
         physics = Physics(model, values["formulation"], values["hall_voltage_noise"], values["seed"])
-        return SampledPlant(physics, ShaftSensor(model.actuator, values["velocity_time_constant"]))
+        self.diagnostics.hardware_id = values["hardware_id"] or model.actuator.name
+        self._actuator = model.actuator
+        winding = Winding(limits_of(model.actuator), 0.0, 0.0)
+        return SampledPlant(physics, ShaftSensor(model.actuator, values["velocity_time_constant"]), winding)
+
+    def _protect(self, winding: Winding, values: Mapping[str, Any]) -> None:
+        """Parameters of the stall protection in force; a device's rating does not follow its supply."""
+        winding.rated_current = values["rated_current"] or limits_of(self._actuator).rated_current
+        winding.time_constant = values["thermal_time_constant"]
+        winding.limits = limits_of(self._actuator, self.plant.physics.values)
 
     def _has_partners(self) -> bool:
         return self._hall_publisher.get_subscription_count() > 0 and self._duty.publishers > 0
 
     def _on_duty(self, message: Float64) -> None:
         try:
-            within = self.plant.duty.offer(message.data)
+            self._reports.duty(message.data, self.plant.duty.offer(message.data))
         except InputError as error:
-            self.diagnostics.begin("duty_not_finite", ERROR, str(error))
-        else:
-            self.diagnostics.end("duty_not_finite")
-            self._report_clipping(message.data, within)
+            self._reports.refused(str(error))
         if self.lockstep is not None:
             self.lockstep.reply()
-
-    def _report_clipping(self, duty: float, within: bool) -> None:
-        if within:
-            self.diagnostics.end("duty_clipped")
-        else:
-            self.diagnostics.begin("duty_clipped", WARN, f"duty {duty:g} is beyond +-1 and was clipped")
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self.lock:

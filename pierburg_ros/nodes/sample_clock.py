@@ -8,6 +8,7 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
 from pierburg_ros.nodes import messages
+from pierburg_ros.nodes.core.sample_time import SampleTime, StampTime
 from pierburg_ros.nodes.qos import SIGNALS
 
 GRACE = 0.02
@@ -15,29 +16,34 @@ GRACE = 0.02
 
 
 class SampleClock:
-    """In wall time the stamp of a sample's sender; in simulated time the `/clock` sent before the sample."""
+    """In wall time the stamp of a sample's sender; in simulated time that of the `/clock` in force at its sending."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._reading = 0
-        self._subscription = node.create_subscription(Clock, "/clock", self._on_clock, SIGNALS)
+        self.stamps = StampTime()
+        self._times = SampleTime()
+        self._subscription = node.create_subscription(Clock, "/clock", self._take, SIGNALS)
 
-    def at(self, info: dict[str, int], last: int | None) -> int | None:
-        """Time [ns] of the sample that came with `info`; None while no simulated time is known.
+    @property
+    def is_simulated(self) -> bool:
+        """Whether the node goes by `/clock`."""
+        return bool(self._node.get_clock().ros_time_is_active)
 
-        `last` is the time of the sample before: where the clock has not moved since, this one is a repetition.
-        """
-        if not self._node.get_clock().ros_time_is_active:
-            return info["source_timestamp"]
-        self._read()
+    def at(self, info: dict[str, int]) -> int | None:
+        """Time [ns] of the sample that came with `info`; None while no simulated time is known."""
+        sent = info["source_timestamp"]
+        if not self.is_simulated:
+            return self.stamps.at(sent)
+        self.read()
         end = time.monotonic() + GRACE
-        while self._reading == last and time.monotonic() < end:
-            self._read()
-        return self._reading or None
+        while self._times.paired and not self._times.has_own(sent) and time.monotonic() < end:
+            self.read()
+        return self._times.at(sent)
 
-    def _read(self) -> None:
+    def read(self) -> None:
+        """Take in all that has come from `/clock`, which the executor might hand over too late."""
         while taken := self._subscription.handle.take_message(Clock, False):
-            self._on_clock(taken[0])
+            self._take(*taken)
 
-    def _on_clock(self, message: Clock) -> None:
-        self._reading = messages.nanoseconds(message.clock)
+    def _take(self, message: Clock, info: dict[str, int]) -> None:
+        self._times.reading(info["source_timestamp"], messages.nanoseconds(message.clock))

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording.formats import cdr
-from pierburg_ros.recording.formats.csv_table import read_table
-from pierburg_ros.recording.formats.messages import Messages
-from pierburg_ros.recording.formats.rosbag2 import read_bag
-from pierburg_ros.recording.loss import Signal, Span, are_numbered, numbered_loss, pauses
+from pierburg_ros.intake import reading
+from pierburg_ros.recording.columns import Columns
+from pierburg_ros.recording.formats import cdr, format_of
+from pierburg_ros.recording.formats.messages import Bag, Messages
+from pierburg_ros.recording.loss import Span, are_numbered, numbered_loss, pauses
 from pierburg_ros.recording.read import DECODERS, read_recording
 from pierburg_ros.recording.recording import Recording
 from pierburg_ros.recording.roles import ROLES, last_name
@@ -73,7 +74,9 @@ def inspect(path: Path, *, time: str | None = None, topics: Mapping[str, str] | 
             raise
         problem = str(error)
     named = {name: signal for signal, name in (topics or {}).items()}
-    contents = columns(path) if path.suffix.lower() == ".csv" else messages(path, named)
+    with reading(path, "a recording"):
+        found = format_of(path).read(path, lambda _: True)
+    contents = columns(found) if isinstance(found, Columns) else messages(found, named)
     return Inspection(path.name, contents, recording, problem)
 
 
@@ -93,9 +96,8 @@ def summary(recording: Recording) -> dict[str, Any]:
     }
 
 
-def messages(path: Path, named: Mapping[str, str]) -> tuple[TopicContent, ...]:
-    """The topics of an MCAP file, a sqlite3 file or a rosbag2 directory; `named` has the signal of some topics."""
-    bag = read_bag(path, lambda _: True)
+def messages(bag: Bag, named: Mapping[str, str]) -> tuple[TopicContent, ...]:
+    """The topics of a file or folder; `named` has the signal of some topics."""
     found = {topic: bag.messages(topic) for topic in sorted(bag.types)}
     first = min((int(each.log_time[0]) for each in found.values() if len(each)), default=0)
     return tuple(topic_content(each, first, named) for each in found.values())
@@ -122,13 +124,12 @@ def topic_content(found: Messages, first: int, named: Mapping[str, str]) -> Topi
     )
 
 
-def columns(path: Path) -> tuple[TopicContent, ...]:
-    """The columns of a CSV table."""
-    table = read_table(path)
-    times = numbers(table.get("time", []))
+def columns(table: Columns) -> tuple[TopicContent, ...]:
+    """The columns of a table."""
+    cells = {name: np.frombuffer(values, np.float64) for name, values in table.cells.items()}
+    times = cells.get("time", np.zeros(0))
     found = []
-    for name, cells in table.items():
-        values = numbers(cells)
+    for name, values in cells.items():
         filled = np.isfinite(values)
         time = times[filled] if times.size == values.size else np.zeros(0)
         time = time[np.isfinite(time)]
@@ -147,17 +148,6 @@ def columns(path: Path) -> tuple[TopicContent, ...]:
             )
         )
     return tuple(found)
-
-
-def numbers(cells: list[str]) -> Signal:
-    """The cells as numbers, NaN where they are none."""
-    found = np.full(len(cells), np.nan)
-    for place, cell in enumerate(cells):
-        try:
-            found[place] = float(cell)
-        except ValueError:
-            continue
-    return found
 
 
 def rate(time: Signal) -> float | None:

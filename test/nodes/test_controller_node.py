@@ -101,8 +101,9 @@ def test_without_hall_samples_it_sends_zero_and_says_so(controller):
 
 
 def test_a_sample_that_is_not_finite_keeps_the_duty(controller):
-    controller.set("controller", setpoint=1.0)
-    duty = [answered(controller, 0.42) for _ in range(10)][-1]
+    controller.set("controller", setpoint=1.0, angle_timeout=3600.0)
+    duty = [answered(controller, 0.42 + 0.01 * step) for step in range(10)][-1]
+    assert duty > 0.0
     assert answered(controller, math.nan) == duty
     controller.until(lambda: reported(controller, "last duty kept"), "the error")
 

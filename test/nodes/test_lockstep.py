@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.plant_time import Lockstep
+from pierburg_ros.nodes.core.plant_time import Lockstep
 
 TICKS = 500
 
@@ -123,8 +123,8 @@ def test_a_stray_duty_before_the_sample_is_no_reply():
 
 
 def test_nobody_answers(monkeypatch):
-    monkeypatch.setattr("pierburg_ros.nodes.plant_time.REPEAT", 0.05)
-    monkeypatch.setattr("pierburg_ros.nodes.plant_time.GIVE_UP", 0.2)
+    monkeypatch.setattr("pierburg_ros.nodes.core.plant_time.REPEAT", 0.05)
+    monkeypatch.setattr("pierburg_ros.nodes.core.plant_time.GIVE_UP", 0.2)
     partner = Partner([0] * 10)
     with pytest.raises(InputError, match="No duty came"):
         partner.lockstep.exchange(partner.send)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.effects import EFFECT
@@ -11,20 +11,8 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.plant import Model, Plant, read_model
 
-
-class Stepped(Protocol):
-    """A simulated actuator, advanced by its caller."""
-
-    noise: float
-
-    def reset(self, angle: float = 0.0) -> None:
-        """Back to rest at `angle` [rad], cold, with the noise from its start."""
-
-    def advance(self, duty: float, duration: float) -> None:
-        """Let `duty` act for `duration` [s]."""
-
-    def measure(self) -> float:
-        """One sample of the Hall voltage [V]."""
+if TYPE_CHECKING:  # compiled only where it is asked for
+    from pierburg_ros.proof.formulation import TextbookPlant
 
 
 class Physics:
@@ -41,6 +29,11 @@ class Physics:
         """Every base parameter and every effect's parameter, with the model's values."""
         return [declaration(self._model, name) for name in self._model.values]
 
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The parameter values in force."""
+        return self._model.values
+
     def has(self, name: str) -> bool:
         """Whether `name` is a parameter of the physics."""
         return name in self._model.values
@@ -51,10 +44,10 @@ class Physics:
         if not changed:
             return
         self._model = self._model.with_values(changed)
-        if self._textbook:
-            self._plant.values = self._model.values
-        else:
+        if isinstance(self._plant, Plant):
             self._plant.model = self._model
+        else:
+            self._plant.values = self._model.values
 
     def reset(self) -> None:
         """Back to the closed stop, at rest and cold."""
@@ -77,10 +70,10 @@ class Physics:
     def noise(self, noise: float) -> None:
         self._plant.noise = noise
 
-    def _made(self, noise: float, seed: int) -> Stepped:
+    def _made(self, noise: float, seed: int) -> Plant | TextbookPlant:
         if not self._textbook:
             return Plant(self._model, noise, seed)
-        from pierburg_ros.proof.formulation import TextbookPlant  # compiled only where it is asked for
+        from pierburg_ros.proof.formulation import TextbookPlant
 
         return TextbookPlant(self._model.values, noise, seed)
 

@@ -12,6 +12,7 @@ PLANT = (
         fixed=True,
         choices=("exact", "textbook"),
     ),
+    Declaration("hardware_id", "", "name of the actuator on /diagnostics; empty: that of its description", fixed=True),
     Declaration("rate", 500.0, "ticks per second", "Hz", 1.0, 2000.0),
     Declaration(
         "simulated_time",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from pierburg_ros.control import Controller, Schedule, Setpoints
 
 
@@ -9,6 +11,10 @@ class SampledController:
     """The control law, the setpoint in force, and a schedule of setpoints if there is one."""
 
     def __init__(self, controller: Controller, setpoints: Setpoints, schedule: Schedule | None = None) -> None:
+        self.longest_step = math.inf
+        """Longer times between two samples [s] count as this for the control law."""
+        self.bounded: float | None = None
+        """The time before the last sample [s] where it was longer than that."""
         self.controller = controller
         self.setpoints = setpoints
         self.schedule = schedule
@@ -16,6 +22,7 @@ class SampledController:
         self._first: int | None = None
         self.last: int | None = None
         self._duty = 0.0
+        self._is_interrupted = False
 
     def prepare(self) -> None:
         """Have the control law compiled, or loaded from the cache, before the first sample comes."""
@@ -31,7 +38,7 @@ class SampledController:
             self.restart()
         if self._first is None:
             self._first = time
-        elapsed = 0.0 if self.last is None else (time - self.last) * 1e-9
+        elapsed = self._elapsed(time)
         self._follow_schedule((time - self._first) * 1e-9)
         self._duty = self.controller.step(self.setpoints.active, hall_voltage, elapsed)
         self.last = time
@@ -42,9 +49,17 @@ class SampledController:
         self.controller.restart()
         self._first = self.last = self._scheduled = None
 
-    def interrupt(self) -> None:
-        """Samples stay away: the next one counts as the first for the law; the schedule goes on."""
-        self.controller.restart()
+    def interrupt(self, duty: float = 0.0) -> None:
+        """The next sample counts as the first for the law and leaves from `duty`; the schedule goes on."""
+        self.controller.restart(duty)
+        self._is_interrupted = True
+
+    def _elapsed(self, time: int) -> float:
+        """Time since the sample before [s], bounded; after an interruption the law ignores it."""
+        elapsed = 0.0 if self.last is None else (time - self.last) * 1e-9
+        self.bounded = elapsed if elapsed > self.longest_step and not self._is_interrupted else None
+        self._is_interrupted = False
+        return min(elapsed, self.longest_step)
 
     def _follow_schedule(self, time: float) -> None:
         if self.schedule is None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.nodes.core.commanded_duty import CommandedDuty
 from pierburg_ros.nodes.core.physics import Physics
+from pierburg_ros.nodes.core.protection.winding import Winding
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 
 
@@ -23,7 +24,9 @@ class Sample:
 class SampledPlant:
     """A simulator, its sensor and the duty it obeys, on one row of ticks."""
 
-    def __init__(self, physics: Physics, sensor: ShaftSensor) -> None:
+    def __init__(self, physics: Physics, sensor: ShaftSensor, winding: Winding | None = None) -> None:
+        """`winding`: the stall protection of the device, if it has one."""
+        self.winding = winding
         self.physics = physics
         self.sensor = sensor
         self.duty = CommandedDuty()
@@ -37,7 +40,7 @@ class SampledPlant:
         self.physics.advance(self._applied, elapsed)
         voltage = self.physics.measure()
         angle, velocity = self.sensor.take(voltage, elapsed)
-        self._applied = self.duty.at(time, timeout)
+        self._applied = self._borne(self.duty.at(time, timeout), elapsed)
         self.last = time
         self.ticks += 1
         return Sample(time, voltage, self._applied, angle, velocity)
@@ -46,3 +49,10 @@ class SampledPlant:
         """Back to the closed stop, at rest and cold; time and duty go on."""
         self.physics.reset()
         self.sensor.reset()
+
+    def _borne(self, duty: float, elapsed: float) -> float:
+        """The part of a duty that the winding bears, after it was warmed by the one before."""
+        if self.winding is None:
+            return duty
+        self.winding.warm(self.winding.current(self._applied, self.sensor.velocity), elapsed)
+        return self.winding.borne(duty, self.sensor.velocity)

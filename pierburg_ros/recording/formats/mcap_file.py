@@ -45,7 +45,7 @@ def read_mcap(path: Path, bag: Bag) -> None:
         except (Damaged, struct.error, UnicodeDecodeError) as error:
             raise InputError(
                 f"{path.name} is damaged after {bag.count} messages ({error}), expected whole records."
-                " Recover it with 'mcap recover', or record again."
+                " Recover it with 'pierburg recover', or record again."
             ) from error
 
 

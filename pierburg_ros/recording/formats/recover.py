@@ -6,7 +6,9 @@ import mmap
 import os
 import re
 import shutil
+import struct
 import tempfile
+import zlib
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,16 +22,18 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
-from mcap.stream_reader import get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.recording.formats.mcap_file import DAMAGE, MESSAGE, RECORD
+from pierburg_ros.recording.formats.compression import Damaged, unpacked
+from pierburg_ros.recording.formats.mcap_file import MESSAGE, RECORD
 from pierburg_ros.recording.formats.mcap_writer import QOS_PROFILES, McapWriter, bag_metadata
 from pierburg_ros.recording.loss import LOSSES, are_numbered
 
 METADATA = "metadata.yaml"
 Content = bytes | mmap.mmap
+DAMAGE = (McapError, Damaged, struct.error, UnicodeDecodeError, EOFError)
+"""What reading a record raises that is not what its writer wrote."""
 
 
 @dataclass(frozen=True)
@@ -202,8 +206,11 @@ class Copy(McapWriter):
         self.describe(channel.topic, kind, metadata.get("topic_type_hash", ""), qos)
 
     def _chunk(self, record: ReadDataStream) -> None:
-        chunk, length = get_chunk_data_stream(Chunk.read(record), validate_crc=True)
-        self.take(chunk.read(length))
+        chunk = Chunk.read(record)
+        content = unpacked(chunk.compression, chunk.data)
+        if chunk.uncompressed_crc not in (0, zlib.crc32(content)):
+            raise Damaged("a chunk whose checksum is another")
+        self.take(content)
 
     def _attachment(self, record: ReadDataStream) -> None:
         one = Attachment.read(record)

@@ -6,6 +6,8 @@ import pytest
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.physics import Physics, chosen_model
+from pierburg_ros.nodes.core.protection.limits import limits_of
+from pierburg_ros.nodes.core.protection.winding import Winding
 from pierburg_ros.nodes.core.sampled_plant import SampledPlant
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.plant import Inputs, Model, simulate
@@ -73,3 +75,28 @@ def test_a_coupled_change_is_all_or_nothing():
 def test_an_actuator_without_hall_sensor_is_refused():
     with pytest.raises(InputError, match="measures its position"):
         chosen_model("xl330", "")
+
+
+def test_a_stall_against_the_open_stop_is_limited_as_a_device_would_do_it():
+    limits = limits_of(read_actuator("pierburg"))
+    sampled = plant()
+    sampled.winding = Winding(limits, limits.rated_current, 20.0)
+    applied = []
+    for tick in range(8000):
+        sampled.duty.offer(1.0)
+        applied.append(sampled.tick(tick * PERIOD, 0.05).duty)
+    limited = next(tick for tick, duty in enumerate(applied) if tick and duty < 1.0) * 0.002
+    assert limited == pytest.approx(20.0 * np.log(9.0 / 8.0), abs=0.2)
+    assert applied[3000] == pytest.approx(1.0 / 3.0, abs=0.01)
+    assert applied[-1] == 0.0
+
+
+def test_what_a_healthy_controller_asks_of_the_plant_is_never_limited():
+    limits = limits_of(read_actuator("pierburg"))
+    plain, protected = plant(noise=0.003), plant(noise=0.003)
+    protected.winding = Winding(limits, limits.rated_current, 20.0)
+    duties = np.repeat([0.26, 0.1, 0.9, 0.2, -0.5, 0.24], [1000, 500, 100, 1000, 100, 800])
+    for tick, duty in enumerate(duties):
+        plain.duty.offer(duty)
+        protected.duty.offer(duty)
+        assert plain.tick(tick * PERIOD, 0.05) == protected.tick(tick * PERIOD, 0.05)

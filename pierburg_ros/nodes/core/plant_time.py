@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from threading import Event, Semaphore
-from typing import TYPE_CHECKING
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.messages import SECOND
-from pierburg_ros.nodes.pacing import Pacer
+from pierburg_ros.nodes.core.pacing import Pacer
+from pierburg_ros.nodes.core.ticking import Ticking
 
-if TYPE_CHECKING:
-    from pierburg_ros.nodes.plant import PlantNode
-
+SECOND = 1_000_000_000
+"""Nanoseconds in a second."""
 REPEAT = 0.2
 """A sample without reply is sent again after this time [s]."""
 GIVE_UP = 5.0
@@ -21,17 +20,17 @@ LOOK = 0.02
 """Time [s] between two looks for the partners of a run in lockstep."""
 
 
-def tick_by_clock(plant: PlantNode) -> None:
+def tick_by_clock(plant: Ticking) -> None:
     """Tick at the rate; a tick has the time of the node's clock, so a late one advances further."""
     while not plant.stopping.is_set():
         plant.pacer.period = 1.0 / plant.values["rate"]
         plant.pacer.wait()
-        now = plant.get_clock().now().nanoseconds
+        now = plant.now()
         if plant.follows(now):
             plant.publish(plant.tick(now))
 
 
-def tick_as_time_source(plant: PlantNode, lockstep: Lockstep | None) -> None:
+def tick_as_time_source(plant: Ticking, lockstep: Lockstep | None) -> None:
     """Tick k has the time of k periods, counted from 1, for ROS takes time 0 for none."""
     pacer = Pacer(0.0)
     now = 0
@@ -42,11 +41,11 @@ def tick_as_time_source(plant: PlantNode, lockstep: Lockstep | None) -> None:
         if lockstep is None:
             plant.publish(sample, with_clock=True)
         else:
-            lockstep.exchange(lambda sample=sample: plant.publish(sample, with_clock=True))
+            lockstep.exchange(partial(plant.publish, sample, with_clock=True))
         factor = plant.values["time_factor"]
         pacer.period = period / factor if factor > 0.0 else 0.0
         pacer.wait()
-        if plant.held_back.wait(now, round(period * SECOND)):
+        if plant.held_back is not None and plant.held_back.wait(now, round(period * SECOND)):
             pacer.restart()
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pierburg_ros.nodes.pacing import Pacer
+from pierburg_ros.nodes.core.pacing import Pacer
 
 
 class Clock:
