@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from pierburg_ros.monitoring.evidence import predicted
 from pierburg_ros.monitoring.findings import Finding
 from pierburg_ros.monitoring.judgement import Judgement
 from pierburg_ros.monitoring.movements import Blocks, Movements, Samples
@@ -51,6 +54,12 @@ class Monitor:
     def noise(self) -> float:
         """Standard deviation of the sensor's noise now [rad]."""
         return self._windows.noise
+
+    def prepare(self) -> None:
+        """Compile, or load, the simulator before the first sample comes."""
+        rest = np.zeros(2)
+        samples = Samples(np.arange(2) * 0.001, rest, rest, np.full(2, np.nan), np.ones(2, dtype=bool))
+        predicted(self.judgement.model, samples, 0.0)
 
     def take(self, samples: Samples) -> list[Change]:
         """Changes that these samples bring."""

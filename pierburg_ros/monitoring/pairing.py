@@ -31,7 +31,8 @@ class Angle:
 
 
 class Pairing:
-    """Takes samples, duties and supplies in the order each was sent; gives samples whose duty is known.
+    """Takes samples, duties and supplies in the order each was sent; gives samples whose duty is known, with times [s]
+    since `origin` [ns], that of the first.
 
     A duty is in force from the sample that was sent no earlier than it, until the next one. Where the duty is published
     behind the sample of its own tick, as `applied_duty` is behind `hall_voltage`, `follows` is True: it belongs to the
@@ -48,6 +49,8 @@ class Pairing:
         self._duty: float | None = None
         self._last: int | None = None
         self._distances: deque[int] = deque(maxlen=USUAL)
+        self._usual = np.inf
+        self.origin: int | None = None
         self.gaps = 0
 
     def angle(self, angle: Angle) -> None:
@@ -68,6 +71,8 @@ class Pairing:
     def paired(self, now: int) -> Samples:
         """The samples whose duty is known by `now` [ns]; the last ones may wait for theirs."""
         rows = []
+        if self._distances:
+            self._usual = float(np.median(self._distances))
         while len(self._angles) > 1:
             reference = self._angles[1].sent if self._follows else self._angles[0].sent
             newest = self._duties[-1][0] if self._duties else None
@@ -86,17 +91,18 @@ class Pairing:
             if self._last - angle.time > SECOND:
                 self._last = None
             return None
+        if self.origin is None:
+            self.origin = angle.time
         whole = self._duty is not None and (fresh or not self._every_tick) and not self._behind_a_gap(angle.time)
         supply = self._supply[1] if abs(angle.sent - self._supply[0]) < STALE else np.nan
-        return angle.time * 1e-9, angle.angle, self._duty or 0.0, supply, whole
+        return (angle.time - self.origin) * 1e-9, angle.angle, self._duty or 0.0, supply, whole
 
     def _behind_a_gap(self, time: int) -> bool:
         """Whether samples are missing before this one."""
         before, self._last = self._last, time
         if before is None:
             return True
-        usual = float(np.median(self._distances)) if self._distances else np.inf
         self._distances.append(time - before)
-        missing = time - before > GAP * usual
+        missing = time - before > GAP * self._usual
         self.gaps += missing
         return missing

@@ -118,8 +118,8 @@ class SensorWatch:
         if self._asleep < TWICE:
             return None
         text = (
-            f"the angle stays at {start:.3g} rad although the duty moves the model by {travel:.2g} rad in {BLOCK} samples: "
-            "sensor stuck, shaft jammed or motor not driven"
+            f"the angle stays at {start:.3g} rad although the duty moves the model by {travel:.2g} rad "
+            f"in {BLOCK} samples: sensor stuck, shaft jammed or motor not driven"
         )
         return _fault("stuck", text, self._blocks)
 
