@@ -57,8 +57,8 @@ class Monitor:
 
     def prepare(self) -> None:
         """Compile, or load, the simulator before the first sample comes."""
-        rest = np.zeros(2)
-        samples = Samples(np.arange(2) * 0.001, rest, rest, np.full(2, np.nan), np.ones(2, dtype=bool))
+        time, rest = np.array([0.0, 0.001]), np.zeros(2)
+        samples = Samples(time, rest, rest, np.full(2, np.nan), np.ones(2, dtype=bool))
         predicted(self.judgement.model, samples, 0.0)
 
     def take(self, samples: Samples) -> list[Change]:

@@ -66,7 +66,7 @@ class MonitorNode(LiveNode):
         windows = [f"{self._stamped(f.start):.3f} to {self._stamped(f.end):.3f}" for f in self.monitor.findings]
         return {
             "samples": self.samples,
-            "gaps": self._pairing.gaps,
+            "lost": self._pairing.lost,
             "movements": self.monitor.movements,
             "sensor_noise_rad": f"{self.monitor.noise:.3g}",
             "supply_over_model": f"{self.monitor.judgement.supply:.3f}",
@@ -77,9 +77,9 @@ class MonitorNode(LiveNode):
     def _look(self) -> None:
         for message, info in self._angles.taken():
             self._heard = time.monotonic()
-            self._angle(message, info["source_timestamp"])
+            self._angle(message, info["source_timestamp"], info["publication_sequence_number"])
         for message, info in self._duties.taken():
-            self._pairing.duty(info["source_timestamp"], message.data)
+            self._pairing.duty(info["source_timestamp"], info["publication_sequence_number"], message.data)
         for message, info in self._supplies.taken():
             self._pairing.supply(info["source_timestamp"], message.data)
         self._report_silence()
@@ -88,14 +88,15 @@ class MonitorNode(LiveNode):
         for change in self.monitor.take(samples):
             self._report(change.finding, change.begins)
 
-    def _of_joint(self, message: JointState, sent: int) -> None:
+    def _of_joint(self, message: JointState, sent: int, number: int) -> None:
         joint = self.values["joint"]
         if joint in message.name and len(message.position) == len(message.name):
             angle = message.position[message.name.index(joint)]
-            self._pairing.angle(Angle(messages.nanoseconds(message.header.stamp), sent, angle))
+            self._pairing.angle(Angle(messages.nanoseconds(message.header.stamp), sent, number, angle))
 
-    def _of_voltage(self, message: Float64, sent: int) -> None:
-        self._pairing.angle(Angle(sent, sent, float(decoded(self._model.actuator, np.float64(message.data)))))
+    def _of_voltage(self, message: Float64, sent: int, number: int) -> None:
+        angle = decoded(self._model.actuator, np.float64(message.data))
+        self._pairing.angle(Angle(sent, sent, number, float(angle)))
 
     def _report_silence(self) -> None:
         topic = self.values["angle_topic"]
