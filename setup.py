@@ -43,6 +43,8 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
+        (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
     ],
     install_requires=[
@@ -69,6 +71,8 @@ setup(
             "plant = pierburg_ros.nodes.plant:main",
             "controller = pierburg_ros.nodes.controller:main",
             "recorder = pierburg_ros.nodes.recorder:main",
+            "monitor = pierburg_ros.nodes.monitor:main",
+            "serial_driver = pierburg_ros.nodes.serial_driver:main",
             *(f"{name} = pierburg_ros.cli.app:{name}" for name in COMMANDS),
         ]
     },

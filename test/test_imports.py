@@ -17,14 +17,16 @@ ALLOWED = {
     "plant": {"errors", "kernel", "effects", "actuators"},
     "control": {"errors", "kernel"},
     "recording": {"errors", "kernel"},
+    "serial_line": {"errors"},
 }
+ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
 ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
-ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification"}
+ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["cli"] = ALLOWED["nodes"]
 FORMULATION = {"errors", "kernel"}
 ROS = {

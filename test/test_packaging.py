@@ -10,11 +10,14 @@ import yaml
 
 from pierburg_ros.control import SETTINGS, Settings
 from pierburg_ros.control.parameter_file import read_parameter_file
+from pierburg_ros.nodes.core.monitor_parameters import MONITOR
 from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
+from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
+MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
 MANIFEST = ElementTree.parse(ROOT / "package.xml").getroot()
 SETUP = (ROOT / "setup.py").read_text()
 NOT_OF_ROS = re.compile(r"python3-")
@@ -47,7 +50,8 @@ def test_every_ros_package_that_the_nodes_import_is_a_dependency():
     from test_imports import ROS, SOURCES, imported
 
     used = {name.split(".")[0] for source in SOURCES for name in imported(source)} & ROS
-    used |= {name.split(".")[0] for name in imported(LAUNCH)} & ROS
+    used |= {name.split(".")[0] for launch in (LAUNCH, MONITORED) for name in imported(launch)} & ROS
+    used |= set(re.findall(r'package="(\w+)"', MONITORED.read_text())) - {"pierburg_ros"}
     assert used == {name for name in dependencies() if not NOT_OF_ROS.match(name)}
 
 
@@ -74,6 +78,21 @@ def test_the_launch_file_names_executables_and_parameter_files_that_exist():
     files = [name for name in literals(LAUNCH) if isinstance(name, str) and name.endswith(".yaml")]
     assert sorted(files) == ["controller.yaml", "plant.yaml", "recorder.yaml"]
     assert all((ROOT / "config" / name).exists() for name in files)
+
+
+def test_the_launch_file_of_a_real_valve_starts_executables_with_parameters_that_they_have():
+    text = MONITORED.read_text()
+    ours = re.findall(r'package="pierburg_ros",\s+executable="(\w+)"', text)
+    assert sorted(ours) == ["monitor", "serial_driver"]
+    assert all(f'"{name} = pierburg_ros.nodes.{name}:main"' in SETUP for name in ours)
+    given = [re.findall(r'"(\w+)"', names) for names in re.findall(r"for name in \((.+?)\)", text)]
+    assert set(given[0]) <= {each.name for each in SERIAL_DRIVER}
+    assert set(given[1]) <= {each.name for each in MONITOR}
+
+
+def test_policies_and_urdf_are_installed():
+    assert 'glob("urdf/*.urdf")' in SETUP
+    assert 'glob("sros2/*.policy.xml")' in SETUP
 
 
 def parameters(file, node):

@@ -17,14 +17,15 @@ from pierburg_ros.serial_line.messages import State, command
 class SimulatedDevice:
     """Samples every `period` [s] of its own clock; a duty without successor ends after the time-out it came with."""
 
-    def __init__(self, period: float = 0.002, boots: int = 1, ticks: int = 0) -> None:
+    def __init__(self, period: float = 0.002, ticks: int = 0, number: int = 0) -> None:
         self.period = period
-        self.boots = boots
+        self.boots = 1
         self.ticks = ticks
         self.enabled = True
         self.supply_voltage = 13.5
         self._plant = Plant(Model.nominal(read_actuator("pierburg")), 0.003)
         self._start()
+        self._number = number
 
     def _start(self) -> None:
         self._frames = Frames()
