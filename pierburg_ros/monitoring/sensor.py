@@ -52,6 +52,7 @@ class SensorWatch:
         self._learnt: list[float] = []
         self._spikes: deque[bool] = deque(maxlen=SPIKE_MEMORY)
         self._blocks: deque[Samples] = deque(maxlen=LATEST)
+        self._hold = (math.nan, 1.0, 0.0, 0.0)
         self._equal = 0
         self._asleep = 0
         self._count = 0
@@ -110,11 +111,17 @@ class SensorWatch:
 
     def _unmoved(self, block: Samples, supply: float) -> Finding | None:
         start = float(np.mean(block.angle[: BLOCK // 5]))
+        if self._held(block, start, supply):
+            self._asleep = 0
+            return None
         travel = abs(float(predicted(self._supplied(supply), block, start, supply)[-1]) - start)
         moved = abs(float(np.mean(block.angle[-BLOCK // 5 :])) - start)
         noise = self.usual_noise
         missing = noise > 0.0 and travel > ASLEEP * noise and moved < SHARE * travel
         self._asleep = self._asleep + 1 if missing else 0
+        if travel == 0.0:
+            low, high = float(np.min(block.duty)), float(np.max(block.duty))
+            self._hold = (start, supply, low, high)
         if self._asleep < TWICE:
             return None
         text = (
@@ -122,6 +129,15 @@ class SensorWatch:
             f"in {BLOCK} samples: sensor stuck, shaft jammed or motor not driven"
         )
         return _fault("stuck", text, self._blocks)
+
+    def _held(self, block: Samples, start: float, supply: float) -> bool:
+        """Whether friction holds the model here under every duty of the block, as a block before has shown.
+
+        Between two duties that leave the shaft where it is, all do; nearby is what the spring does not tell apart.
+        """
+        angle, before, low, high = self._hold
+        near = abs(start - angle) < self.usual_noise and supply == before
+        return near and low <= float(np.min(block.duty)) and float(np.max(block.duty)) <= high
 
     def _offset(self, supply: float) -> Finding | None:
         """Once for every row of blocks: at rest where the duty of that row drives the shaft onto a stop for certain."""
