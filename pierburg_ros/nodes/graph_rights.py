@@ -13,7 +13,7 @@ COMPLETE = "set_parameter"
 """Last topic that every node of this package subscribes: with it the node is whole."""
 SETTLED = 1.0
 """Time for which nothing may be added before the rights count [s]: discovery of one node takes a tenth of it."""
-DEADLINE = 180.0
+DEADLINE = 600.0
 """Longest wait for a node [s], which may have to compile its simulator first."""
 
 
