@@ -47,22 +47,21 @@ CHANGES = {
 class Bench:
     """A valve in a closed loop that makes a move of ten degrees every six seconds, watched."""
 
-    def __init__(self, seed: int, wanders: bool) -> None:
+    def __init__(self, seed: int, duration: int) -> None:
+        """Lasts `duration` [s] at most."""
         self.nominal = Model.nominal(read_actuator("pierburg"))
         self.service = Service(self.nominal, Settings(), RATE, NOISE, seed)
         self.monitor = Monitor(self.nominal)
         self.busy = 0.0
         self._random = np.random.default_rng([seed, 1])
-        self._supply = np.full(DAY, 13.5)
-        if wanders:
-            self._supply = wandering_supply(DAY, *SUPPLY, self._random)
+        self._supply = wandering_supply(duration + 1, *SUPPLY, self._random)
         self._ran = 0.0
         self._angle = 45.0
 
     def run(self, duration: float) -> list[Change]:
         """Changes on the way through `duration` [s]."""
         setpoint = np.repeat(self._moves(round(duration / HOLD)), round(HOLD * RATE))
-        supply = np.interp(self._ran + np.arange(setpoint.size) / RATE, np.arange(DAY), self._supply)
+        supply = np.interp(self._ran + np.arange(setpoint.size) / RATE, np.arange(self._supply.size), self._supply)
         self._ran += duration
         stretch = self.service.run(setpoint, supply)
         angle = decoded(self.nominal.actuator, stretch.hall_voltage)
@@ -88,7 +87,7 @@ def detect(seeds: int) -> None:
     for name, values in CHANGES.items():
         delays, said = [], Counter()
         for seed in range(seeds):
-            bench = Bench(seed, wanders=True)
+            bench = Bench(seed, round(BEFORE + AFTER))
             early = bench.run(BEFORE)
             bench.service.model = bench.nominal.with_values(values)
             found = first_finding(bench)
@@ -119,7 +118,7 @@ def days(count: int) -> None:
     """False warnings in days of ten moves a minute on a supply that wanders, unlogged, from 12 to 14.5 V."""
     print("| day (seed) | hours so far | moves | warnings | processor time of the monitor |\n|---|---|---|---|---|")
     for seed in range(1000, 1000 + count):
-        bench, said = Bench(seed, wanders=True), []
+        bench, said = Bench(seed, DAY), []
         for hour in range(1, 25):
             said += [change.finding.text for change in bench.run(3600.0) if change.begins]
             moves, busy = bench.monitor.movements, bench.busy

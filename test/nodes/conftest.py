@@ -27,7 +27,7 @@ def domain() -> int:
 def graph(domain: int, tmp_path: Path) -> Iterator[object]:
     """An empty graph; its nodes end with the test."""
     pytest.importorskip("rclpy")
-    from ros_graph import Graph
+    from support.ros_graph import Graph
 
     with Graph(domain, tmp_path) as graph:
         yield graph
