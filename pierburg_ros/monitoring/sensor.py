@@ -65,15 +65,22 @@ class SensorWatch:
             return []
         self._blocks.append(block)
         frozen = self._frozen(block)
-        found = [frozen, self._noisier(block), self._jumps(block), self._offset(supply)]
+        found = [frozen, self._noisier(block), self._jumps(block)]
         if frozen is None:
             found.append(self._unmoved(block, supply))
+        if self._asleep == 0:
+            found.append(self._offset(supply))
         return [finding for finding in found if finding is not None]
 
     @property
     def usual_noise(self) -> float:
         """Standard deviation of the sensor's noise when the watch began [rad]; 0 until it is learnt."""
         return float(np.median(self._learnt)) if len(self._learnt) == BASELINE else 0.0
+
+    @property
+    def _noise_now(self) -> float:
+        """Standard deviation of the sensor's noise in the last second [rad]."""
+        return float(np.median(self._noises))
 
     def _frozen(self, block: Samples) -> Finding | None:
         equal = bool(np.ptp(block.angle) == 0.0)
@@ -92,7 +99,7 @@ class SensorWatch:
         if len(self._learnt) < BASELINE:
             self._learnt.append(self._noises[-1])
             return None
-        now = float(np.median(self._noises))
+        now = self._noise_now
         if now <= RISE * self.usual_noise or self.usual_noise == 0.0:
             return None
         text = f"sensor noise is {now:.2g} rad RMS, {now / self.usual_noise:.1f} times what it was"
@@ -102,7 +109,7 @@ class SensorWatch:
         value = self.model.values
         top = FAST * value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
         passed = np.diff(block.time)
-        far = np.abs(np.diff(block.angle)) > top * passed + JUMP * max(self.usual_noise, self._noises[0])
+        far = np.abs(np.diff(block.angle)) > top * passed + JUMP * max(self.usual_noise, self._noise_now)
         self._spikes.append(bool(np.any(far)) and self.usual_noise > 0.0)
         if sum(self._spikes) < SPIKES:
             return None

@@ -38,6 +38,7 @@ class SerialDriverNode(LiveNode):
         self._last: Received | None = None
         self._heard = time.monotonic()
         self._unsent = 0
+        self._sensor: ShaftSensor | None = None
         self._thread = ThreadPoolExecutor(1, "line")
         self.declare(SERIAL_DRIVER)
         values = self.values
@@ -52,7 +53,7 @@ class SerialDriverNode(LiveNode):
 
     def accept(self, changes: Mapping[str, Any]) -> None:
         """The filter of the velocity changes at once, the rest with the next command or look."""
-        if "velocity_time_constant" in changes and hasattr(self, "_sensor"):
+        if "velocity_time_constant" in changes and self._sensor is not None:
             self._sensor.time_constant = changes["velocity_time_constant"]
 
     def counters(self) -> Mapping[str, object]:

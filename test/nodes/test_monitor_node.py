@@ -43,7 +43,7 @@ def test_a_resistance_that_drifted_is_named_and_the_recording_split(graph):
     graph.until(lambda: len(list((graph.folder / "recordings").glob("*.mcap"))) > 1, "a second recording")
 
 
-def test_an_actuator_without_supply_is_refused_in_one_line(graph):
+def test_a_description_that_cannot_be_used_is_refused_in_one_line(graph):
     description = "name: odd\ntitle: odd\nload: spring\nsensor: position\nstops: {lower: 0.0, upper: 1.0}\n"
     (graph.folder / "odd.yaml").write_text(description)
     status, output = graph.ended(graph.start("monitor", "actuator:=odd.yaml"), by=None)
