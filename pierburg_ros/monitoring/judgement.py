@@ -34,7 +34,7 @@ Six movements have some 6,000 samples, whose mean square varies by 0.02 by chanc
 PAUSE = 10.0
 """Least time [s] between two searches for an explanation, which take half a second of a core."""
 LONG_PAUSE = 60.0
-"""The same after a search that found something: what was found is looked at again, at 1 % of a core."""
+"""The same after two searches that found the same: it is looked at again, at 1 % of a core."""
 NEW = 3
 """Least number of movements between them."""
 
@@ -52,6 +52,7 @@ class Judgement:
         self._left: deque[float] = deque(maxlen=RECENT)
         self._count = 0
         self._pause = PAUSE
+        self._found: tuple[str, tuple[str, ...]] | None = None
         self._searched_at = (-np.inf, -NEW)
         self._left_since: int | None = None
 
@@ -91,7 +92,9 @@ class Judgement:
             return False, None
         self._searched_at = (end, self._count)
         judged, finding = self._searched()
-        self._pause = PAUSE if finding is None else LONG_PAUSE
+        found = None if finding is None else finding.same
+        self._pause = LONG_PAUSE if found is not None and found == self._found else PAUSE
+        self._found = found
         return judged, finding
 
     def _follow_supply(self) -> None:

@@ -97,9 +97,11 @@ class Monitor:
                 return []
             self._actuator = None
             return [Change(before, False)]
-        self._clear, self._actuator = 0, finding
+        self._clear = 0
         if before is None:
+            self._actuator = finding
             return [Change(finding, True)]
-        if (before.kind == finding.kind and set(before.names) & set(finding.names)) or before.same == finding.same:
+        if before.kind == finding.kind and set(finding.names) <= set(before.names):
             return []
+        self._actuator = finding
         return [Change(before, False), Change(finding, True)]
