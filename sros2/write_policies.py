@@ -19,12 +19,11 @@ from pierburg_ros.processes import end, own_graph, start_node
 
 FOLDER = Path(__file__).parent
 DUTIES = "time,duty\n0,0\n600,0\n"
-OUTPUT = "recording.mcap"
 SETPOINTS = "time,setpoint\n0,0\n600,0\n"
 WAYS: dict[str, list[dict[str, object]]] = {
     "plant": [{}, {"simulated_time": True}],
     "controller": [{}, {"publish_internals": True, "use_sim_time": True}],
-    "recorder": [{"output": OUTPUT}, {"output": OUTPUT, "use_sim_time": True}],
+    "recorder": [{"output": "wall.mcap"}, {"output": "simulated.mcap", "use_sim_time": True}],
     "monitor": [{}, {"angle_topic": "hall_voltage", "duty_topic": "duty", "use_sim_time": True}],
     "excitation": [
         {"duty_file": "duty.csv", "patience": 600.0},
@@ -62,7 +61,7 @@ def observed_with(name: str, parameters: dict[str, object]) -> Rights:
 
 def _with_paths(parameters: dict[str, object], folder: Path) -> dict[str, object]:
     files = {
-        key: str(folder / str(value)) for key, value in parameters.items() if key.endswith("_file") or value == OUTPUT
+        key: str(folder / str(value)) for key, value in parameters.items() if key.endswith("_file") or key == "output"
     }
     return {**parameters, **files}
 
