@@ -6,7 +6,7 @@ from glob import glob
 from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
-NODES = ("plant", "controller", "recorder")
+NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
 COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "inspect", "recover", "prove", "tune")
 # colcon and the build farm of ROS call `setup.py install` or `develop`, which put executables into lib/pierburg_ros
 # (setup.cfg), where `ros2 run pierburg_ros NAME` finds them. pip never does: with it they would crowd the path.
@@ -57,6 +57,8 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
+        (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
     ],
     install_requires=[

@@ -22,14 +22,16 @@ ALLOWED = {
     "plant": {"errors", "kernel", "intake", "parameter", "workers", "effects", "actuators", "arrays"},
     "control": {"errors", "kernel", "intake", "parameter"},
     "recording": {"errors", "kernel", "intake", "arrays"},
+    "serial_line": {"errors"},
 }
+ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
 ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
-ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification"}
+ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification"}
 ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
 ALLOWED["__main__"] = {"cli"}

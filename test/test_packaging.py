@@ -15,11 +15,14 @@ from support.launch_file import launched
 from pierburg_ros.control import SETTINGS, Settings
 from pierburg_ros.control.parameter_file import read_parameter_file
 from pierburg_ros.nodes.core.controller_parameters import CONTROLLER
+from pierburg_ros.nodes.core.monitor_parameters import MONITOR
 from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
+from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
+MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
 MANIFEST = ElementTree.parse(ROOT / "package.xml").getroot()
 SETUP = (ROOT / "setup.py").read_text()
 NOT_OF_ROS = re.compile(r"python3-")
@@ -47,7 +50,8 @@ def test_every_ros_package_that_the_nodes_import_is_a_dependency():
     from test_imports import ROS, SOURCES, imported
 
     used = {name.split(".")[0] for source in SOURCES for name in imported(source)} & ROS
-    used |= {name.split(".")[0] for name in imported(LAUNCH)} & ROS
+    used |= {name.split(".")[0] for launch in (LAUNCH, MONITORED) for name in imported(launch)} & ROS
+    used |= set(re.findall(r'package="(\w+)"', MONITORED.read_text())) - {"pierburg_ros"}
     assert used == {name for name in dependencies() if not NOT_OF_ROS.match(name)}
 
 
@@ -130,7 +134,7 @@ def test_colcon_gets_an_executable_for_every_node_and_command(arguments):
 def test_pip_puts_the_one_command_on_the_path(tmp_path):
     source, wheels, prefix = tmp_path / "source", tmp_path / "wheels", tmp_path / "prefix"
     source.mkdir()
-    for name in ("pierburg_ros", "launch", "config", "resource"):
+    for name in ("pierburg_ros", "launch", "config", "resource", "urdf", "sros2"):
         shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml"):
         shutil.copy(ROOT / name, source)
@@ -147,6 +151,21 @@ def test_pip_puts_the_one_command_on_the_path(tmp_path):
 def parameters(file):
     """Parameters that a configuration file gives to a node of any name."""
     return yaml.safe_load((ROOT / "config" / file).read_text())["/**"]["ros__parameters"]
+
+
+def test_the_launch_file_of_a_real_valve_starts_executables_with_parameters_that_they_have():
+    text = MONITORED.read_text()
+    ours = re.findall(r'package="pierburg_ros",\s+executable="(\w+)"', text)
+    assert sorted(ours) == ["monitor", "serial_driver"]
+    assert set(ours) <= set(entry_points("install"))
+    given = [re.findall(r'"(\w+)"', names) for names in re.findall(r"for name in \((.+?)\)", text)]
+    assert set(given[0]) <= {each.name for each in SERIAL_DRIVER}
+    assert set(given[1]) <= {each.name for each in MONITOR}
+
+
+def test_policies_and_urdf_are_installed():
+    assert 'glob("urdf/*.urdf")' in SETUP
+    assert 'glob("sros2/*.policy.xml")' in SETUP
 
 
 def test_the_plants_file_names_parameters_that_exist_in_their_range():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -11,7 +12,9 @@ import typer
 
 from pierburg_ros.errors import InputError
 
-NODES = ("plant", "controller", "recorder")
+NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
+DISCOVERY = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+"""How far nodes look for others: LOCALHOST, SUBNET or OFF."""
 
 
 def run(
@@ -21,10 +24,12 @@ def run(
     """Start a node; it runs until SIGINT or SIGTERM.
 
     Everything behind the node's name goes to ROS, as in: pierburg run plant --ros-args -p rate:=1000.0
+    The node stays on this machine unless ROS_AUTOMATIC_DISCOVERY_RANGE says otherwise (SUBNET opens it).
     """
     if node not in NODES:
         raise InputError(f"There is no node {node!r}; expected one of {', '.join(NODES)}.")
     require_ros()
+    os.environ.setdefault(DISCOVERY, "LOCALHOST")
     sys.argv = [node, *context.args]
     import_module(f"pierburg_ros.nodes.{node}").main()
 

@@ -1,0 +1,80 @@
+"""Writes the SROS2 policy of every node from the graph it really has: starts it in each of its ways and looks.
+
+`python sros2/write_policies.py` replaces sros2/*.policy.xml; test/nodes/test_policies.py holds them against the nodes.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from pathlib import Path
+
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+
+from pierburg_ros.nodes.core.policy import Rights, policy
+from pierburg_ros.nodes.graph_rights import rights_of
+from pierburg_ros.processes import end, own_graph, start_node
+
+FOLDER = Path(__file__).parent
+DUTIES = "time,duty\n0,0\n600,0\n"
+SETPOINTS = "time,setpoint\n0,0\n600,0\n"
+WAYS: dict[str, list[dict[str, object]]] = {
+    "plant": [{}, {"simulated_time": True}],
+    "controller": [{}, {"publish_internals": True, "use_sim_time": True}],
+    "recorder": [{"output": "wall.mcap"}, {"output": "simulated.mcap", "use_sim_time": True}],
+    "monitor": [{}, {"angle_topic": "hall_voltage", "duty_topic": "duty", "use_sim_time": True}],
+    "excitation": [
+        {"duty_file": "duty.csv", "patience": 600.0},
+        {"setpoint_file": "setpoints.csv", "patience": 600.0, "use_sim_time": True},
+    ],
+    "serial_driver": [{"port": "/dev/no_such_line"}],
+}
+"""Nodes, and the parameters with which each has other topics; their policies allow all of these ways."""
+
+
+def observed(name: str, folder: Path) -> Rights:
+    """Rights of the node `name` over all its ways, each started alone on a graph of its own; `folder` is its own."""
+    (folder / "duty.csv").write_text(DUTIES)
+    (folder / "setpoints.csv").write_text(SETPOINTS)
+    rights = Rights()
+    for parameters in WAYS[name]:
+        rights |= observed_with(name, _with_paths(parameters, folder))
+    return rights
+
+
+def observed_with(name: str, parameters: dict[str, object]) -> Rights:
+    """Rights of the node `name` started with `parameters`."""
+    graph = own_graph()
+    context = Context()
+    rclpy.init(context=context, domain_id=int(graph["ROS_DOMAIN_ID"]))
+    observer: Node = rclpy.create_node("observer", context=context)
+    process = start_node(name, parameters, subprocess.DEVNULL, graph)
+    try:
+        return rights_of(observer, name)
+    finally:
+        end(process)
+        observer.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def _with_paths(parameters: dict[str, object], folder: Path) -> dict[str, object]:
+    files = {
+        key: str(folder / str(value)) for key, value in parameters.items() if key.endswith("_file") or key == "output"
+    }
+    return {**parameters, **files}
+
+
+def main() -> None:
+    """Write all policies."""
+    for name in WAYS:
+        with tempfile.TemporaryDirectory() as folder:
+            rights = observed(name, Path(folder))
+        path = FOLDER / f"{name}.policy.xml"
+        path.write_text(policy(name, rights), encoding="utf-8")
+        print(path, flush=True)
+
+
+if __name__ == "__main__":
+    main()
