@@ -17,6 +17,9 @@ from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
 
+TOLD_APART = 1e-6
+"""Least difference of the Hall voltages at the stops, relative to the larger one: a converter of 20 bits tells it."""
+
 
 @dataclass(frozen=True)
 class Model:
@@ -33,7 +36,9 @@ class Model:
         values.update({f"{effect.id}.{name}": 0.0 for effect in EFFECTS for name in effect.names})
         for effect, numbers in actuator.effects.items():
             values.update({f"{effect}.{name}": value for name, value in numbers.items()})
-        return Model(actuator, values)
+        model = Model(actuator, values)
+        model._check_pairs()
+        return model
 
     def with_values(self, changes: Mapping[str, float]) -> Model:
         """The model with some values changed; InputError where a name is unknown or a value not allowed."""
@@ -98,6 +103,12 @@ class Model:
             raise InputError(
                 f"static_friction.breakaway_torque is {breakaway:g}; expected 0 (absent) or at least "
                 f"coulomb_friction, {value['coulomb_friction']:g}. Change both together."
+            )
+        ends = [value.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
+        if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
+            raise InputError(
+                f"hall_voltage_closed and hall_voltage_open are both {ends[0]:g}; expected two voltages, which tell the"
+                " closed stop from the open one."
             )
         source = value["supply_sag.source_resistance"]
         if source != 0.0 and source >= value["armature_resistance"]:

@@ -81,9 +81,8 @@ def _relative_slopes(fitted: Fit, quantities: Callable[[Model], dict[str, float]
     step = 1e-6
     rows = []
     for offset in step * np.eye(len(fitted.names)):
-        ahead, behind = (
-            np.log(list(quantities(fitted.scaling.model(fitted.coordinates + sign * offset)).values()))
-            for sign in (1.0, -1.0)
-        )
-        rows.append((ahead - behind) / (2.0 * step))
+        models = (fitted.scaling.model(fitted.coordinates + sign * offset) for sign in (1.0, -1.0))
+        with np.errstate(divide="ignore", invalid="ignore"):  # nothing is known of a lump that is 0
+            ahead, behind = (np.log(list(quantities(model).values())) for model in models)
+            rows.append((ahead - behind) / (2.0 * step))
     return np.asarray(np.array(rows).T)
