@@ -30,6 +30,7 @@ from pierburg_ros.identification.experiment.excitation import (
 )
 from pierburg_ros.identification.experiment.explanations import explanation
 from pierburg_ros.identification.experiment.synthetic import Signal, synthetic_recording
+from pierburg_ros.intake import check_count
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
 from pierburg_ros.recording.write import write_simulated
@@ -80,6 +81,7 @@ def experiment(
         )
     if graph:
         require_ros()
+    check_count(duration or max(DURATION.values()), rate, "An experiment")
     base, console = starting_model(model, actuator), terminal()
     with output_folder(output) as folder:
         if discriminate is not None:

@@ -20,6 +20,7 @@ from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Settings, read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.resimulation import inputs_of
+from pierburg_ros.intake import check_count
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording, read_recording, write_recording
 from pierburg_ros.recording.write import Signal
@@ -43,8 +44,9 @@ class Sampling:
 
     def times(self, last: float) -> NDArray[np.float64]:
         """Sample times [s], evenly spaced, by default until `last`."""
-        rate = self.rate or RATE
-        return np.arange(round((self.duration or last) * rate) + 1) / rate
+        rate, duration = self.rate or RATE, self.duration or last
+        check_count(duration, rate, "A simulation")
+        return np.arange(round(duration * rate) + 1) / rate
 
     def times_like(self, recording: Recording) -> NDArray[np.float64]:
         """Sample times [s] of `recording`, unless a rate or a duration beyond its end is wanted."""
@@ -97,6 +99,7 @@ def closed_loop(model: Model, settings: Settings, setpoints: Path, sampling: Sam
     schedule = read_setpoint_file(setpoints)
     duration = sampling.duration or float(schedule.time[-1]) + AFTER_LAST
     rate = sampling.rate or RATE
+    check_count(duration, rate, "A simulation")
     run = simulate_loop(
         model, settings, schedule, duration, rate, sampling.noise, sampling.seed, sampling.initial_angle
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +50,7 @@ def write_page(path: Path, comparison: Comparison) -> None:
     figure.update_yaxes(title_text=f"residual [{recording.unit}]", row=2)
     figure.update_yaxes(title_text="duty [%]", row=3)
     figure.update_xaxes(title_text="time [s]", row=3)
-    figure.update_layout(title=title(comparison), template="plotly_white", height=800)
+    figure.update_layout(title=escape(title(comparison)), template="plotly_white", height=800)
     figure.write_html(path, include_plotlyjs=True)
 
 
@@ -59,7 +60,7 @@ def write_picture(path: Path, comparison: Comparison) -> None:
     figure = Figure(figsize=(10, 6.5), layout="constrained")
     FigureCanvasAgg(figure)
     signal, residual, duty = figure.subplots(3, sharex=True, height_ratios=[5, 3, 2])
-    signal.set_title(title(comparison), fontsize=10)
+    signal.set_title(title(comparison), fontsize=10, parse_math=False)
     for name, values, style in (
         ("measured", recording.measured, "-"),
         ("simulated", comparison.simulated, "--"),

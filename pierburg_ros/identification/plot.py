@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -96,7 +97,7 @@ def write_page(path: Path, found: Identification, recordings: list[Recording]) -
     figure.add_trace(heat, row=3, col=2)
     figure.update_yaxes(title_text=LABELS[recordings[0].quantity], row=1)
     figure.update_xaxes(title_text="time [s], recordings one after another", row=2)
-    title = f"Identification of {found.model.actuator.name}"
+    title = f"Identification of {escape(found.model.actuator.name)}"
     figure.update_layout(template="plotly_white", height=1000, title=title)
     figure.write_html(path, include_plotlyjs=True)
 
