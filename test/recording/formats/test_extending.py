@@ -30,7 +30,7 @@ def copy(tmp_path):
     shutil.copytree(ROOT / "pierburg_ros", package, ignore=shutil.ignore_patterns("__pycache__"))
     (example,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extending.md").read_text(), flags=re.DOTALL)
     formats = package / "recording" / "formats"
-    (formats / "json_lines.py").write_text(textwrap.dedent("   " + example))
+    (formats / "json_lines.py").write_text(textwrap.dedent(example))
     table = (formats / "__init__.py").read_text()
     table = table.replace("import csv_table,", "import csv_table, json_lines,")
     table = table.replace("    csv_table.FORMAT,\n", "    csv_table.FORMAT,\n    json_lines.FORMAT,\n")
