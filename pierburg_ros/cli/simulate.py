@@ -21,6 +21,7 @@ from pierburg_ros.control import Settings, read_duty_file, read_parameter_file, 
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.resimulation import inputs_of
 from pierburg_ros.intake import check_count
+from pierburg_ros.intake.table import LONGEST_LINE
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording, read_recording, write_recording
 from pierburg_ros.recording.write import Signal
@@ -135,7 +136,7 @@ def is_duty_file(path: Path) -> bool:
     if path.suffix.lower() != ".csv" or not path.is_file():
         return False
     with path.open(encoding="utf-8", errors="replace") as file:
-        header = file.readline()
+        header = file.readline(LONGEST_LINE)
     return not any(measured in header for measured in ("hall_voltage", "position"))
 
 
