@@ -19,5 +19,5 @@ def test_ten_billion_samples_are_refused_and_four_million_are_not():
 @pytest.mark.parametrize("value", [1.1e9, -np.inf, np.nan])
 def test_a_value_beyond_any_sensor_is_named_with_its_place(value):
     check_magnitude("duty", np.array([1e9, -1e9]))
-    with pytest.raises(InputError, match="duty has .* as value 2 of 3, expected magnitudes up to 1e"):
+    with pytest.raises(InputError, match=r"duty has .* as value 2 of 3, expected magnitudes up to 1e"):
         check_magnitude("duty", np.array([0.0, value, 0.0]))
