@@ -11,8 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from pierburg_ros.actuators.actuator import UNITS, Actuator, Load, NominalParameter, Quantity
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import parsed, reading, text_of
+from pierburg_ros.intake.bounds import LARGEST
 
 SHIPPED = ("pierburg", "xl330")
 """Actuators that come with the package."""
@@ -26,6 +27,10 @@ _COMMON = {
     "supply_voltage",
 }
 _NEEDED = {"spring": {"spring_stiffness", "spring_preload"}, "pendulum": {"gravity_torque"}}
+_POSITIVE = {"armature_resistance", "torque_constant", "gear_ratio", "total_inertia"}
+_MAGNITUDES = {"spring_stiffness", "coulomb_friction", "supply_voltage"}
+SMALLEST = 1e-18
+"""Least value that counts as above 0: the inertia of a micro-motor's rotor is 1e-14 kg.m^2."""
 _SENSOR = {"hall_voltage": {"hall_voltage_closed", "hall_voltage_open"}, "position": set[str]()}
 
 
@@ -56,8 +61,8 @@ class _Stops(_Strict):
 
 
 class _Description(_Strict):
-    name: str = Field(min_length=1)
-    title: str = ""
+    name: str = Field(min_length=1, max_length=80)
+    title: str = Field(default="", max_length=200)
     load: Load
     sensor: Quantity
     stops: _Stops | None = None
@@ -73,12 +78,38 @@ class _Description(_Strict):
             raise ValueError(f"parameters has unknown {', '.join(unknown)}; known: {', '.join(UNITS)}")
         if self.stops and self.stops.lower >= self.stops.upper:
             raise ValueError("stops.lower must be less than stops.upper")
+        self._possible()
         for effect, values in self.effects.items():
             if effect not in EFFECT:
                 raise ValueError(f"effects has unknown {effect}; known: {', '.join(EFFECT)}")
-            if unknown := sorted(set(values) - set(EFFECT[effect].names)):
-                raise ValueError(f"{effect} has no parameter {', '.join(unknown)}")
+            _check_effect(effect, values)
         return self
+
+    def _possible(self) -> None:
+        """Refuse ranges that no actuator has: equations divide by some numbers, and others are magnitudes."""
+        for name, parameter in self.parameters.items():
+            if name in _POSITIVE and not parameter.minimum >= SMALLEST:
+                raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum above 0")
+            if name in _MAGNITUDES and not parameter.minimum >= 0.0:
+                raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum of 0 or more")
+            if max(abs(parameter.minimum), abs(parameter.maximum)) > LARGEST:
+                raise ValueError(f"{name} may exceed {LARGEST:g}; expected a range of the actuator's own size")
+
+
+def _check_effect(effect: str, values: dict[str, float]) -> None:
+    """Refuse an effect whose numbers are unknown, missing or out of their ranges."""
+    declared = EFFECT[effect]
+    if unknown := sorted(set(values) - set(declared.names)):
+        raise ValueError(f"{effect} has no parameter {', '.join(unknown)}")
+    for parameter in declared.parameters:
+        value = values.get(parameter.name)
+        if value is None and parameter.default is None:
+            raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
+        if value is not None and not min(parameter.minimum, 0.0) <= value <= parameter.maximum:
+            span = f"{parameter.minimum:g} to {parameter.maximum:g}"
+            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected {span}")
+        if value and parameter.choices and value not in parameter.choices:
+            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected one of {parameter.choices}")
 
 
 def read_actuator(source: str | Path) -> Actuator:
@@ -125,8 +156,8 @@ def _actuator(description: _Description) -> Actuator:
     parameters = {name: _parameter(name, p) for name, p in description.parameters.items()}
     stops = description.stops
     return Actuator(
-        description.name,
-        description.title or description.name,
+        printable(description.name),
+        printable(description.title or description.name),
         description.load,
         description.sensor,
         parameters,

@@ -29,6 +29,7 @@ from pierburg_ros.identification.experiment.excitation import (
 )
 from pierburg_ros.identification.experiment.explanations import explanation
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.intake import check_count
 from pierburg_ros.library.output import output_folder
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
@@ -81,6 +82,7 @@ def experiment(
     if graph:
         require_ros()
     base, console = chosen_or_valve(model, actuator), terminal()
+    check_count(duration or max(DURATION.values()), rate, "An experiment")
     with output_folder(output) as folder:
         if discriminate is not None:
             chosen = designed(folder, console, base, discriminate, duration or 60.0, rate, noise, limit)

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from pierburg_ros.closed_loop.loop import TICK, Signal, sample
+from pierburg_ros.arrays import Signal
+from pierburg_ros.closed_loop.loop import TICK, sample
 from pierburg_ros.control import Settings, law
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel

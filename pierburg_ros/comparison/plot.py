@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import escape
+
 import numpy as np
 import plotly.graph_objects as go
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -47,7 +49,7 @@ def page(comparison: Comparison) -> go.Figure:
     figure.update_yaxes(title_text=f"residual [{recording.unit}]", row=2)
     figure.update_yaxes(title_text="duty [%]", row=3)
     figure.update_xaxes(title_text="time [s]", row=3)
-    return figure.update_layout(title=title(comparison), template="plotly_white", height=800)
+    return figure.update_layout(title=escape(title(comparison)), template="plotly_white", height=800)
 
 
 def picture(comparison: Comparison) -> Figure:
@@ -56,7 +58,7 @@ def picture(comparison: Comparison) -> Figure:
     figure = Figure(figsize=(10, 6.5), layout="constrained")
     FigureCanvasAgg(figure)
     signal, residual, duty = figure.subplots(3, sharex=True, height_ratios=[5, 3, 2])
-    signal.set_title(title(comparison), fontsize=10)
+    signal.set_title(title(comparison), fontsize=10, parse_math=False)
     for name, values, style in (
         ("measured", recording.measured, "-"),
         ("simulated", comparison.simulated, "--"),

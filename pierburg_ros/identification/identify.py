@@ -97,7 +97,7 @@ def identify(
         refuse_unmoved(recording)
     names = free_names(model, free, fixed)
     fitted = fit(model, recordings, names, jobs=jobs)
-    spring = model.actuator.load == "spring"
+    spring = model.actuator.load == "spring" and fitted.model.values["spring_stiffness"] > 0.0
     static = static_characteristic(recordings, model.actuator)
     supply = fitted.model.values["supply_voltage"]
     return Identification(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 
 import numpy as np
 import plotly.graph_objects as go
@@ -96,7 +97,7 @@ def page(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
     figure.add_trace(heat, row=3, col=2)
     figure.update_yaxes(title_text=LABELS[recordings[0].quantity], row=1)
     figure.update_xaxes(title_text="time [s], recordings one after another", row=2)
-    title = f"Identification of {found.model.actuator.name}"
+    title = f"Identification of {escape(found.model.actuator.name)}"
     return figure.update_layout(template="plotly_white", height=1000, title=title)
 
 

@@ -11,8 +11,8 @@ from typing import BinaryIO
 
 from pierburg_ros.errors import InputError
 
-LARGEST_TEXT = 4 << 20
-"""Bytes of a YAML file at most: the metadata of a recording split into 10,000 files has half of that."""
+LARGEST_TEXT = 1 << 20
+"""Bytes of a YAML file at most: the metadata of a recording split into 4,000 files has so many."""
 PACKAGE = str(Path(__file__).parents[1]) + os.sep
 FAULTS = (NameError, AttributeError, TypeError, AssertionError, ImportError, NotImplementedError)
 """What a mistake in a program raises. From a library it is that library's answer to the input."""

@@ -16,6 +16,7 @@ from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Schedule, Settings, read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.intake import check_count
 from pierburg_ros.library.model import Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
@@ -55,8 +56,9 @@ class Sampling:
 
     def times(self, last: float) -> Signal:
         """Sample times [s], evenly spaced, by default until `last`."""
-        rate = self.rate or RATE
-        return np.arange(round((self.duration or last) * rate) + 1) / rate
+        rate, duration = self.rate or RATE, self.duration or last
+        check_count(duration, rate, "A simulation")
+        return np.arange(round(duration * rate) + 1) / rate
 
     def times_like(self, sampled: Signal) -> Signal:
         """The times [s] at which something was `sampled`, unless a rate or a duration beyond its end is wanted."""
@@ -175,6 +177,7 @@ def closed_loop(model: Model, settings: Settings, setpoints: Schedule, sampling:
     """A run under the controller."""
     duration = sampling.duration or float(setpoints.time[-1]) + AFTER_LAST
     rate = sampling.rate or RATE
+    check_count(duration, rate, "A simulation")
     run = simulate_loop(
         model, settings, setpoints, duration, rate, sampling.noise, sampling.seed, sampling.initial_angle
     )

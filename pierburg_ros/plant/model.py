@@ -19,6 +19,8 @@ from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
 """Parameters of effects that keep above or below a base parameter."""
+TOLD_APART = 1e-6
+"""Least difference of the Hall voltages at the stops, relative to the larger one: a converter of 20 bits tells it."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,9 @@ class Model:
         values.update({f"{effect.id}.{name}": 0.0 for effect in EFFECTS for name in effect.names})
         for effect, numbers in actuator.effects.items():
             values.update({f"{effect}.{name}": value for name, value in numbers.items()})
-        return Model(actuator, values)
+        model = Model(actuator, values)
+        model._check_pairs()
+        return model
 
     def with_values(self, changes: Mapping[str, float]) -> Model:
         """The model with some values changed; InputError where a name is unknown or a value not allowed."""
@@ -101,6 +105,12 @@ class Model:
                 raise InputError(
                     f"{name} is {value:g}; expected less than {declared.below}, {self.values[declared.below]:g}."
                 )
+        ends = [self.values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
+        if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
+            raise InputError(
+                f"hall_voltage_closed and hall_voltage_open are both {ends[0]:g}; expected two voltages, which tell the"
+                " closed stop from the open one."
+            )
 
     def as_mapping(self) -> dict[str, Any]:
         """The model file's content: what differs from nominal, the effects that act, the residual torque."""

@@ -114,7 +114,7 @@ def test_a_parameter_file_sets_the_controller(setpoints, tmp_path):
         (("--duty", "duty.csv", "--controller", "c.yaml"), "runs without a controller"),
         (("--duty", "setpoints.csv"), "does not begin with the header time,duty"),
         (("--setpoints", "duty.csv"), "does not begin with the header time,setpoint"),
-        (("--setpoints", "none.csv"), "none.csv cannot be read"),
+        (("--setpoints", "none.csv"), "none.csv does not exist"),
         (("--duty", "none.mcap"), "none.mcap does not exist"),
         (("--setpoints", "setpoints.csv", "--noise", "-1"), "--noise"),
         (("--setpoints", "setpoints.csv", "--actuator", "xl330"), "the controller needs hall_voltage"),

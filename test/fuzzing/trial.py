@@ -25,11 +25,11 @@ from pierburg_ros.recording import read_recording
 LONGEST_LINE = 300
 """Characters of a message at most."""
 SLOW = 10.0
-"""Time [s] for an input of a fuzzer, which has next to no honest work in it."""
+"""Processor time [s] for an input of a fuzzer, which has next to no honest work in it."""
 HEAVY = 2 << 30
 """Bytes of memory at most."""
-PATIENCE = 60
-"""Time [s] after which a reading is broken off."""
+PATIENCE = 120
+"""Wall time [s] after which a reading is broken off."""
 OUTPUT_OF = Callable[[random.Random], bytes]
 
 
@@ -104,9 +104,9 @@ def tried(seed: int, folder: Path) -> Outcome:
     """How the input of `seed`, written into the empty `folder`, ends."""
     kind, files = case(seed)
     write(files, folder)
-    before, began = peak(), time.perf_counter()
+    before, began = peak(), time.process_time()
     how, detail = ending(kind, folder)
-    duration = time.perf_counter() - began
+    duration = time.process_time() - began
     if how in ("result", "line") and peak() > max(before, HEAVY):
         how, detail = "memory", f"{peak() / 2**30:.1f} GiB"
     elif how in ("result", "line") and duration > SLOW:

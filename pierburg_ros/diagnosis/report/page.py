@@ -127,7 +127,7 @@ def picture(result: Result) -> Figure:
         axes.grid(alpha=0.25)
         for place in diagnosis.locations:
             axes.axvspan(place.start, place.end, color=WINDOW, alpha=0.3, linewidth=0)
-    drawn.suptitle(headline(diagnosis), fontsize=11)
+    drawn.suptitle(headline(diagnosis), fontsize=11, parse_math=False)
     above.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8, frameon=False)
     above.set_ylabel(LABELS[diagnosis.quantity])
     before.set_ylabel(f"error before [{diagnosis.unit}]")

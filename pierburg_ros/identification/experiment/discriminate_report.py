@@ -40,8 +40,8 @@ def write_picture(path: Path, design: Design, names: tuple[str, str], quantity: 
     figure = Figure(figsize=(10, 6), layout="constrained")
     FigureCanvasAgg(figure)
     answer, difference, duty = figure.subplots(3, sharex=True, height_ratios=[4, 3, 2])
-    answer.plot(design.time, design.first_answer, color="#d62728", linewidth=1, label=names[0])
-    answer.plot(design.time, design.second_answer, color="#1f77b4", linewidth=1, label=names[1])
+    answer.plot(design.time, design.first_answer, color="#d62728", linewidth=1, label=names[0].replace("$", r"\$"))
+    answer.plot(design.time, design.second_answer, color="#1f77b4", linewidth=1, label=names[1].replace("$", r"\$"))
     answer.legend(fontsize=8, loc="upper right")
     title = f"before refitting; after it {design.separation:.1f} noise deviations apart"
     answer.set_title(title, fontsize=10)

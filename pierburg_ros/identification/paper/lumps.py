@@ -85,7 +85,8 @@ def _relative_slopes(fitted: Identified, quantities: Callable[[Model], dict[str,
 
     def logarithms(point: Signal) -> Signal:
         model = estimator.model({**estimator.nominal.values, **coordinates.values(point)})
-        return np.log(list(quantities(model).values()))
+        with np.errstate(divide="ignore", invalid="ignore"):  # nothing is known of a lump that is 0
+            return np.log(list(quantities(model).values()))
 
     point = fitted.fit.solution.point
     moves = step * np.eye(point.size)

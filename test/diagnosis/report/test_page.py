@@ -140,3 +140,11 @@ def test_headline_names_effects_and_drifts():
 def test_picture_is_a_png(tmp_path):
     picture(result()).savefig(tmp_path / "overview.png", dpi=110)
     assert (tmp_path / "overview.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_names_from_files_are_text_on_page_and_picture(tmp_path):
+    name = "<script>alert(1)</script>$\\frac$"
+    hostile = result(recordings=[name], summary=name, advice=[name])
+    write_page(tmp_path / "report.html", hostile)
+    assert "<script>alert" not in (tmp_path / "report.html").read_text()
+    picture(hostile).savefig(tmp_path / "overview.png")

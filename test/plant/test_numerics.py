@@ -1,0 +1,61 @@
+"""The same input gives the same output on any number of threads; what cannot be simulated ends soon and is said."""
+
+import time
+
+import numpy as np
+import pytest
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.comparison.compare import compare
+from pierburg_ros.errors import InputError
+from pierburg_ros.plant import Inputs, Model, simulate, simulate_many
+from pierburg_ros.plant.signal_path import BURST, SUSTAINED
+from pierburg_ros.recording import Channel, Recording
+
+NOMINAL = Model.nominal(read_actuator("pierburg"))
+TIME = np.arange(251) * 0.002
+STEPS = Inputs(np.arange(10) * 0.05, np.array([1.0, -0.3, 0.24, 0.0, 0.5, -1.0, 1.0, 0.1, 0.24, 0.0]))
+WRINKLED = NOMINAL.with_values(
+    {
+        "position_dependent_friction.amplitude": 5.0,
+        "position_dependent_friction.center": 0.8,
+        "position_dependent_friction.width": 1e-9,
+        "armature_inductance.inductance": 0.1,
+    }
+)
+"""A friction that bends over a nanoradian, for which the simulator's steps are as short."""
+
+
+def models() -> list[Model]:
+    changes = [
+        {
+            "armature_resistance": 3.0 + 0.2 * k,
+            "backlash.gap": 0.01 * (k % 3),
+            "thermal_resistance.thermal_resistance": 2.0 * (k % 2),
+        }
+        for k in range(9)
+    ]
+    complete = {"backlash.motor_friction_share": 0.5, "thermal_resistance.heat_capacity": 5.0}
+    return [NOMINAL.with_values({**complete, **change}) for change in changes]
+
+
+@pytest.mark.parametrize("threads", [1, 2, 4])
+def test_the_number_of_threads_changes_no_bit(threads):
+    alone = np.array([simulate(model, STEPS, TIME) for model in models()])
+    for _ in range(3):
+        assert simulate_many(models(), STEPS, TIME, threads=threads).tobytes() == alone.tobytes()
+
+
+def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
+    began = time.process_time()
+    output = simulate(WRINKLED, STEPS, TIME)
+    assert np.isnan(output[-1])
+    allowed = (BURST + SUSTAINED * TIME[-1]) * 20e-6  # s, an event taking twenty times its usual time
+    assert time.process_time() - began < allowed
+
+
+def test_a_comparison_with_such_a_model_says_so_in_one_line():
+    measured = simulate(NOMINAL, STEPS, TIME)
+    recording = Recording("run", "hall_voltage", TIME, measured, Channel(STEPS.time, STEPS.duty))
+    with pytest.raises(InputError, match=r"The model of pierburg cannot be simulated with these values \(from "):
+        compare(WRINKLED, recording)
