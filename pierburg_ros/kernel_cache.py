@@ -23,9 +23,11 @@ from numba.core import caching
 
 PACKAGE = Path(__file__).parent
 KEPT = 6
-"""Cache folders kept besides the one in use, those of other versions that ran last; one takes up to 30 MB."""
-IN_USE = 24.0 * 3600.0
-"""Time [s] since its last use for which a folder is never removed: several versions may run side by side all day."""
+"""Cache folders kept besides the one in use, those of other versions that ran last; one takes up to 40 MB."""
+IDLE = 86_400.0
+"""Time [s] after its opening from which a folder may be removed: a day. A process opens its folder with its first
+kernel and calls the others within its first minutes; a day leaves room for a suspended machine. What a process finds
+removed all the same is compiled again."""
 LOG = logging.getLogger(__name__)
 
 
@@ -61,18 +63,31 @@ def opened(folder: Path) -> Path:
 
 
 def prune(folder: Path) -> None:
-    """Remove what older versions have left beside `folder`, but for the `KEPT` that ran last and any `IN_USE`."""
-    used = {other: other.stat().st_mtime for other in folder.parent.iterdir() if other.is_dir() and other != folder}
-    latest = sorted(used, key=lambda other: used[other], reverse=True)
-    for old in latest[KEPT:]:
-        if used[old] < time.time() - IN_USE:
+    """Remove what other versions have left beside `folder`, but for the `KEPT` that ran last and those not `IDLE`."""
+    used = {other: last_use(other) for other in folder.parent.iterdir() if other.is_dir() and other != folder}
+    for old in sorted(used, key=used.__getitem__, reverse=True)[KEPT:]:
+        if time.time() - used[old] > IDLE:
             shutil.rmtree(old, ignore_errors=True)
+
+
+def last_use(folder: Path) -> float:
+    """When a cache folder was used last [s since 1970]; 0 where another process has just removed it."""
+    try:
+        return folder.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
 
 
 @cache
 def announce() -> None:
     """Log, once in a process, that the wait is for the compiler."""
     LOG.info("compiling the simulator for this machine, once (about 20 s) ...")
+
+
+@cache
+def warn(reason: str) -> None:
+    """Log, once for each reason, that the next process has to compile again."""
+    LOG.warning("a compiled kernel could not be kept (%s); the next process compiles it again", reason)
 
 
 class KernelCache(caching.NullCache):
@@ -88,14 +103,23 @@ class KernelCache(caching.NullCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled before for a signature; None, and a line in the log, where it has to be compiled now."""
-        found = self._files.load_overload(sig, target_context)
+        try:
+            found = self._files.load_overload(sig, target_context)
+        except OSError:
+            found = None
         if found is None:
             announce()
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep what was compiled for a signature."""
-        self._files.save_overload(sig, data)
+        """Keep what was compiled for a signature, in a folder made anew if it is gone.
+
+        Where that fails (a full disk, a folder removed while it is written to) the log says so and the kernel runs.
+        """
+        try:
+            self._files.save_overload(sig, data)
+        except OSError as error:
+            warn(error.strerror or str(error))
 
     def flush(self) -> None:
         """Forget what was compiled."""

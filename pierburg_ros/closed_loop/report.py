@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.closed_loop.course import STEPS, WAYS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal, settling_bounds
 from pierburg_ros.closed_loop.judgement import Judgement
 from pierburg_ros.closed_loop.plants import NOMINAL
 from pierburg_ros.closed_loop.tune import RATE, STATED
+from pierburg_ros.effects import DECLARED
+from pierburg_ros.plant import Model
 
 DEGREES = 180.0 / math.pi
 
@@ -44,7 +47,8 @@ SUMMARY = ("overshoot", "steady_state_error", "absolute_error", "hunting")
 
 def report(goal: Goal, judgements: Sequence[Judgement]) -> str:
     """The whole comparison."""
-    tables = [settings_table(judgements), goals_table(goal, judgements), set_table(goal, judgements)]
+    plants = plants_table(judgements[0].plants)
+    tables = [plants, settings_table(judgements), goals_table(goal, judgements), set_table(goal, judgements)]
     return "\n\n".join(tables + [step_table(judgements, plant) for plant in STATED]) + "\n"
 
 
@@ -60,6 +64,25 @@ def section(title: str, header: Sequence[str], rows: Iterable[Sequence[str]]) ->
     """A titled Markdown table, its first two columns to the left and the others to the right."""
     rule = ["---", "---", *["---:"] * (len(header) - 2)]
     return f"### {title}\n\n" + "\n".join(f"| {' | '.join(row)} |" for row in (header, rule, *rows))
+
+
+def plants_table(plants: Mapping[str, Model]) -> str:
+    """What makes each plant: the values in which it differs from the nominal one."""
+    nominal = plants[NOMINAL].values
+
+    def differences(model: Model) -> str:
+        changed = (name for name, value in model.values.items() if value != nominal[name])
+        return ", ".join(stated(name, model.values[name]) for name in changed) or "nothing"
+
+    return section(
+        "Plants", ["plant", "what it changes"], ([name, differences(model)] for name, model in plants.items())
+    )
+
+
+def stated(name: str, value: float) -> str:
+    """A parameter of a model by its dotted name, with value and unit."""
+    unit = UNITS[name][0] if name in UNITS else DECLARED[name].unit
+    return f"`{name}` {value:.6g}" + ("" if unit == "1" else f" {unit}")
 
 
 def settings_table(judgements: Sequence[Judgement]) -> str:
@@ -91,23 +114,23 @@ def set_table(goal: Goal, judgements: Sequence[Judgement]) -> str:
         for plant in judgements[0].plants:
             for each in judgements:
                 met = int(np.sum(each.shares(plant, goal) <= 1.0))
-                yield [plant, each.name, f"{met} of {GOALS}", *plain(extremes(each, plant, goal))]
+                yield [plant, each.name, f"{met} of {GOALS}", *plain(extremes(each, plant))]
         for each in judgements:
             met = sum(int(np.sum(each.shares(plant, goal) <= 1.0)) for plant in each.plants)
-            worst = np.max([extremes(each, plant, goal) for plant in each.plants], axis=0)
+            worst = np.max([extremes(each, plant) for plant in each.plants], axis=0)
             yield ["**all plants, worst**", each.name, f"{met} of {GOALS * len(each.plants)}", *plain(worst)]
 
-    titles = ["worst share of a goal", "settling / bound", *(COLUMNS[name].title for name in SUMMARY)]
+    titles = ["settling / bound", *(COLUMNS[name].title for name in SUMMARY)]
     return section(
         "Every plant of the set: largest median over the steps", ["plant", "controller", "goals met", *titles], rows()
     )
 
 
-def extremes(each: Judgement, plant: str, goal: Goal) -> NDArray[np.float64]:
-    """Largest medians over the steps: share of a goal, settling over the nominal bound, then SUMMARY."""
+def extremes(each: Judgement, plant: str) -> NDArray[np.float64]:
+    """Largest medians over the steps: settling over the nominal bound, then SUMMARY."""
     settling = each.median(plant, "settling") / settling_bounds(each.plants[NOMINAL], RATE)
     others = [COLUMNS[name].factor * each.median(plant, name).max() for name in SUMMARY]
-    return np.array([each.shares(plant, goal).max(), settling.max(), *others])
+    return np.array([settling.max(), *others])
 
 
 def plain(values: NDArray[np.float64]) -> list[str]:

@@ -27,7 +27,8 @@ HIGHEST_SHARE = 0.98
 """Share of its limit up to which a search moves a parameter that has to stay `below` another: what is left is room for
 the differences of a Jacobian, a thousandth of a range, on either side."""
 
-PAPER = "equation (5) of the paper"
+PAPER = "Modeling and PI-Fuzzy logic controller of the Pierburg mechatronic actuator (n.d.), equation (5)"
+"""The paper whose actuator the package simulates; its text names neither authors nor year."""
 ARMSTRONG = (
     "Armstrong-Helouvry, Dupont, Canudas de Wit, A survey of models, analysis tools and compensation methods for the "
     "control of machines with friction (1994)"
@@ -107,7 +108,7 @@ class Effect:
     """What it does, for a person who repairs the actuator."""
     equation: str
     source: str
-    """Where the equation comes from: title and year."""
+    """Where the equation comes from: `Authors, Title (year)`, with a place in it where that helps."""
     shows_in: str
     """Where in a recording its mark is."""
     record: str

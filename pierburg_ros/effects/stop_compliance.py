@@ -1,4 +1,4 @@
-"""Elastic end stops."""
+"""Elastic end stops: a spring and a damper side by side, the contact of Kelvin and Voigt."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
@@ -8,7 +8,7 @@ EFFECT = Effect(
     stage="load",
     sentence="The end stops give a little and bounce instead of stopping dead.",
     equation="one-sided, both stops: torque = max(0, stiffness p + damping dp/dt) at penetration p",
-    source="Kelvin-Voigt contact; Johnson, Contact Mechanics (1985)",
+    source="Johnson, Contact Mechanics (1985)",
     shows_in="contact with a stop",
     record="duty that presses against each stop, more and less",
     parameters=(

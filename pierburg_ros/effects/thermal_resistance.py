@@ -11,7 +11,7 @@ EFFECT = Effect(
     sentence="The motor gets warm under load and weaker with it.",
     equation="R (1 + 0.0039 rise), heat_capacity d(rise)/dt = i^2 R - rise / thermal_resistance, "
     "rise 0 at the first sample",
-    source="copper, 0.0039 1/K at 20 degC; IEC 60028, International standard of resistance for copper (1925)",
+    source="IEC, International standard of resistance for copper, IEC 60028 (1925)",
     shows_in="grows over the recording with the current drawn",
     record="long holding at high duty, then a pause",
     parameters=(
@@ -46,7 +46,7 @@ EFFECT = Effect(
 
 
 COPPER = 0.0039
-"""Temperature coefficient of the resistance of copper [1/K] (IEC 60028)."""
+"""Temperature coefficient of the resistance of copper [1/K], from 20 degC (IEC 60028)."""
 
 
 @kernel

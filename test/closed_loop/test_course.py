@@ -7,7 +7,7 @@ import pytest
 
 from pierburg_ros.closed_loop.course import STEPS, WAYS, Course
 from pierburg_ros.closed_loop.loop import Run
-from pierburg_ros.closed_loop.plants import CHANGES, NOMINAL, plant_set
+from pierburg_ros.closed_loop.plants import NOMINAL, RESISTANCE, plant_set
 from pierburg_ros.effects import EFFECTS
 
 
@@ -51,13 +51,16 @@ def test_the_metrics_are_cut_at_the_steps():
 
 
 def test_every_effect_of_the_catalogue_is_among_the_plants():
-    used = {name.split(".")[0] for changes in CHANGES.values() for name in changes if "." in name}
+    used = {effect for model in plant_set().values() for effect in model.active_effects}
     assert used == {effect.id for effect in EFFECTS}
 
 
 def test_every_plant_acts_as_its_name_says():
-    plants = plant_set()
-    assert plants[NOMINAL].active_effects == ()
-    for name, model in plants.items():
-        effects = {key.split(".")[0] for key in CHANGES[name] if "." in key}
-        assert set(model.active_effects) == effects
+    for name, model in plant_set().items():
+        expected = () if name in (NOMINAL, *RESISTANCE) else (name.replace(" ", "_"),)
+        assert model.active_effects == expected
+
+
+def test_static_friction_breaks_away_at_1_4_times_coulomb_friction():
+    values = plant_set()["static friction"].values
+    assert values["static_friction.breakaway_torque"] == pytest.approx(1.4 * 0.2007)  # Table I

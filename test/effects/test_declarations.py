@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from pierburg_ros.effects import EFFECT, EFFECTS, Effect
@@ -54,6 +56,12 @@ def test_declaration_is_complete(effect: Effect) -> None:
     assert all(text.strip() for text in texts)
     assert effect.sentence.endswith(".")
     assert set(effect.strength) <= set(effect.names) and effect.strength[0] == effect.names[0]
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
+def test_the_source_is_authors_title_and_year(effect: Effect) -> None:
+    """`Authors, Title (year)`, or `Title (n.d.)` where neither is known; then, where needed, a place in it."""
+    assert re.fullmatch(r"([A-Z].*, [A-Z].* \((18|19|20)\d\d\)|[A-Z].* \(n\.d\.\))(, \w.*)?", effect.source)
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
