@@ -66,7 +66,8 @@ class Data:
     @property
     def duration(self) -> float:
         """Time of the last sample of the first recording [s]."""
-        return max(float(run.time[-1]) for run in self.runs if run.number == 0)
+        first = self.runs[0].number
+        return max(float(run.time[-1]) for run in self.runs if run.number == first)
 
     @property
     def angle_per_unit(self) -> float:

@@ -51,8 +51,9 @@ def covariance(estimator: Estimator, fit: Fit) -> tuple[Covariance, Signal]:
         return estimator.residual_at(fit.explanation, coordinates, point)
 
     slopes = sharp(residual, fit.solution.point, coordinates.bounds)
-    ends = np.cumsum([int(np.count_nonzero(run.train)) for run in estimator.data.runs])[:-1]
-    return covariance_of(slopes, tuple(np.split(fit.solution.residual, ends))), slopes
+    lengths = [int(np.count_nonzero(run.train)) for run in estimator.data.runs]
+    parts = np.split(fit.solution.residual, np.cumsum(lengths)[:-1])
+    return covariance_of(slopes, tuple(part for part in parts if part.size)), slopes
 
 
 def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Estimate]:
