@@ -66,7 +66,7 @@ ROOMS = {
         "signal_path": {"torques", "motion", "gear", "state"},
     },
     "proof": {"formulation": set()},
-    "recording": {"formats": {"columns", "recording", "roles"}},
+    "recording": {"formats": {"columns", "loss", "recording", "roles"}},
 }
 """Rooms inside a part, and which others of them each may import. What is not named stands above, and may import all."""
 ROS = {

@@ -141,7 +141,8 @@ def test_pip_puts_the_one_command_on_the_path(tmp_path):
     pip = [sys.executable, "-m", "pip", "--quiet"]
     quick = ["--no-deps", "--no-index"]
     subprocess.run([*pip, "wheel", *quick, "--no-build-isolation", "-w", wheels, source], check=True)
-    subprocess.run([*pip, "install", *quick, "--no-compile", "--prefix", prefix, *wheels.iterdir()], check=True)
+    apart = ["--no-compile", "--ignore-installed", "--prefix", prefix]  # leaves the environment of the tests alone
+    subprocess.run([*pip, "install", *quick, *apart, *wheels.iterdir()], check=True)
     assert [path.name for path in (prefix / "bin").iterdir()] == ["pierburg"]
     installed = {path.name for path in prefix.rglob("*") if path.is_file()}
     data = [path for path in (ROOT / "pierburg_ros").rglob("*") if path.suffix in (".yaml", ".html", ".typed")]

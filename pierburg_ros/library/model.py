@@ -15,7 +15,7 @@ from pierburg_ros.plant.model_file import read_model
 class Model(plant.Model):
     """An actuator, the values of its parameters by dotted name, and the effects that act.
 
-    `values` has every name, as in `armature_resistance` [ohm] or `backlash.gap` [rad]; those of absent effects are
+    `values` has every name, as in `armature_resistance` [ohm] or `effect.parameter`; those of absent effects are
     0. A model never changes: `with_values` gives another one, `write(path)` writes a model file.
 
         worn = pr.Model.nominal("pierburg").with_values({"armature_resistance": 4.7})

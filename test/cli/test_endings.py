@@ -8,15 +8,16 @@ import time
 from pathlib import Path
 
 import pytest
-from pierburg_ros.cli.output import output_folder
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import output_folder
 
 COMMAND = """
 import os, sys, time
 from pathlib import Path
 from types import SimpleNamespace
-from pierburg_ros.cli import app, output
+from pierburg_ros.cli import app
+from pierburg_ros.library import output
 
 def tune() -> None:
     with output.output_folder(Path(sys.argv[1])) as folder:

@@ -8,8 +8,8 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.comparison.plot import write_page, write_picture
-from pierburg_ros.identification.plot import write_page as write_identification
+from pierburg_ros.comparison.plot import page, picture
+from pierburg_ros.identification.plot import page as page_of_identification
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
@@ -25,26 +25,24 @@ def comparison():
     return Comparison(recording, Model.nominal(actuator), measured + 0.01)
 
 
-def assert_harmless(page: str) -> None:
+def assert_harmless(written: str) -> None:
     """No tag of the name, neither as markup nor as what plotly makes markup of."""
-    own = page[page.index("Plotly.newPlot") :]
+    own = written[written.index("Plotly.newPlot") :]
     assert "alert(1)" in own
     for tag in ("<script>alert", "<img", r"\u003cscript", r"\u003cimg"):
         assert tag not in own
 
 
-def test_the_page_of_a_replay(tmp_path, comparison):
-    write_page(tmp_path / "replay.html", comparison)
-    assert_harmless((tmp_path / "replay.html").read_text())
+def test_the_page_of_a_replay(comparison):
+    assert_harmless(page(comparison).to_html(include_plotlyjs=True))
 
 
-def test_the_page_of_an_identification(tmp_path, comparison):
+def test_the_page_of_an_identification(comparison):
     fitted = SimpleNamespace(residuals=[comparison.residual], names=("a",), correlation=np.ones((1, 1)))
     found = SimpleNamespace(fitted=fitted, static=None, model=comparison.model)
-    write_identification(tmp_path / "identification.html", found, [comparison.recording])
-    assert_harmless((tmp_path / "identification.html").read_text())
+    assert_harmless(page_of_identification(found, [comparison.recording]).to_html(include_plotlyjs=True))
 
 
 def test_the_picture_of_a_replay_takes_a_formula_for_a_name(tmp_path, comparison):
-    write_picture(tmp_path / "replay.png", comparison)
+    picture(comparison).savefig(tmp_path / "replay.png")
     assert (tmp_path / "replay.png").stat().st_size > 10_000

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.cli.simulate import Sampling
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import check_count, check_magnitude
+from pierburg_ros.library.simulation import Sampling
 
 
 def test_ten_billion_samples_are_refused_and_four_million_are_not():

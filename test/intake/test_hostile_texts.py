@@ -100,7 +100,7 @@ def _written(folder, text):
 @pytest.mark.parametrize("value", ["9" * 400, "2001-01-01", "[1]", "true", "'1'", ".nan"])
 def test_settings(tmp_path, value):
     text = f"controller: {{ros__parameters: {{zero: {value}}}}}"
-    assert "zero = " in refusal(tmp_path, read_parameter_file, text)
+    assert "zero is " in refusal(tmp_path, read_parameter_file, text)
 
 
 @pytest.mark.parametrize(

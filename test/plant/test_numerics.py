@@ -43,7 +43,7 @@ def models() -> list[Model]:
 def test_the_number_of_threads_changes_no_bit(threads):
     alone = np.array([simulate(model, STEPS, TIME) for model in models()])
     for _ in range(3):
-        assert simulate_many(models(), STEPS, TIME, threads=threads).tobytes() == alone.tobytes()
+        assert simulate_many(models(), STEPS, TIME, jobs=threads).tobytes() == alone.tobytes()
 
 
 def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
