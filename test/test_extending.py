@@ -56,7 +56,7 @@ def with_step(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package with the step of docs/extending/diagnosis.md."""
     root = tmp_path_factory.mktemp("step")
     diagnosis = copied(root) / "diagnosis"
-    file, field, call = blocks("diagnosis.md")
+    (file, field), (call,) = blocks("diagnosis.md"), blocks("diagnosis.md", "text")
     (diagnosis / "evidence/at_stops.py").write_text(file)
     regimes = '    regimes: list[Regime] = []\n    """Of the first recording."""\n'
     insert(diagnosis / "schema.py", regimes, field)
