@@ -114,7 +114,7 @@ class KernelCache(caching.NullCache):
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, in a folder made anew if it is gone.
 
-        Where that fails (a full disk, a folder removed while it is written to) the log says so and the kernel runs.
+        Where that fails (a folder removed while it is written to, or not writable) the log says so and the kernel runs.
         """
         try:
             self._files.save_overload(sig, data)
