@@ -124,8 +124,8 @@ def _mechanics(p, s, duration):
     end = s.time + duration
     remaining = duration
     heats = p.thermal_resistance.thermal_resistance != 0.0
-    s.events = max(s.events - SUSTAINED * duration, 0.0)
-    for _ in range(min(EVENTS, int(BURST - s.events))):
+    most = EVENTS if s.events == 0.0 else min(EVENTS, int(BURST - s.events))
+    for event in range(most):
         start, amperes = s.motor_angle, s.current
         if p.gear_compliance.stiffness != 0.0:
             used = elastic.move(p, s, remaining)
@@ -138,8 +138,8 @@ def _mechanics(p, s, duration):
         if heats and used > 0.0:
             drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
         remaining -= used
-        s.events += 1.0
         if not remaining > 0.0:
+            s.events = max(s.events + event - SUSTAINED * duration, 0.0)
             s.time = end
             return
     s.angle = s.velocity = math.nan
