@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from functools import reduce
 from pathlib import Path
 
 import rclpy
 from rclpy.context import Context
 from rclpy.node import Node
+from std_msgs.msg import Float64
 
 from pierburg_ros.nodes.core.policy import Rights, policy
 from pierburg_ros.nodes.graph_rights import rights_of
@@ -32,27 +36,33 @@ WAYS: dict[str, list[dict[str, object]]] = {
     "serial_driver": [{"port": "/dev/no_such_line"}],
 }
 """Nodes, and the parameters with which each has other topics; their policies allow all of these ways."""
+BESIDE_ANOTHER = {"controller": "duty"}
+"""Nodes that read a topic while another one publishes it, to know whether that one lives."""
 
 
 def observed(name: str, folder: Path) -> Rights:
     """Rights of the node `name` over all its ways, each started alone on a graph of its own; `folder` is its own."""
     (folder / "duty.csv").write_text(DUTIES)
     (folder / "setpoints.csv").write_text(SETPOINTS)
-    rights = Rights()
-    for parameters in WAYS[name]:
-        rights |= observed_with(name, _with_paths(parameters, folder))
-    return rights
+    with ExitStack() as graphs:
+        observers = [graphs.enter_context(started(name, _with_paths(way, folder))) for way in WAYS[name]]
+        if name in BESIDE_ANOTHER:
+            observers.append(graphs.enter_context(started(name, {}, BESIDE_ANOTHER[name])))
+        return reduce(Rights.__or__, rights_of(observers, name))
 
 
-def observed_with(name: str, parameters: dict[str, object]) -> Rights:
-    """Rights of the node `name` started with `parameters`."""
+@contextmanager
+def started(name: str, parameters: dict[str, object], published: str = "") -> Iterator[Node]:
+    """An observer of the node `name`, started with `parameters`; `published` is a topic that the observer offers."""
     graph = own_graph()
     context = Context()
     rclpy.init(context=context, domain_id=int(graph["ROS_DOMAIN_ID"]))
-    observer: Node = rclpy.create_node("observer", context=context)
+    observer: Node = rclpy.create_node("observer", context=context, enable_rosout=False)
+    if published:
+        observer.create_publisher(Float64, published, 10)
     process = start_node(name, parameters, subprocess.DEVNULL, graph)
     try:
-        return rights_of(observer, name)
+        yield observer
     finally:
         end(process)
         observer.destroy_node()

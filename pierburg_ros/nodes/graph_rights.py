@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 
 from rclpy.node import Node
 from rclpy.node import NodeNameNonExistentError as Missing
@@ -11,22 +12,24 @@ from pierburg_ros.nodes.core.policy import Rights, named
 
 COMPLETE = "set_parameter"
 """Last topic that every node of this package subscribes: with it the node is whole."""
-SETTLED = 1.0
-"""Time for which nothing may be added before the rights count [s]: discovery of one node takes a tenth of it."""
+SETTLED = 3.0
+"""Time for which nothing may be added before the rights count [s]: a whole controller looks at the graph for 1 s before
+it has a publisher, and on a busy machine discovery takes another second."""
 DEADLINE = 600.0
 """Longest wait for a node [s], which may have to compile its simulator first."""
 
 
-def rights_of(observer: Node, name: str) -> Rights:
-    """Rights that the node `name` uses; TimeoutError where it does not come up."""
+def rights_of(observers: Sequence[Node], name: str) -> list[Rights]:
+    """Rights that a node `name` uses on the graph of each observer; TimeoutError where one does not come up."""
     end = time.monotonic() + DEADLINE
-    seen, since = Rights(), time.monotonic()
+    seen, since = [Rights()], time.monotonic()
     while time.monotonic() < end:
         time.sleep(0.1)
-        now = _present(observer, name)
+        now = [_present(observer, name) for observer in observers]
         if now != seen:
             seen, since = now, time.monotonic()
-        if f"~/{COMPLETE}" in seen.subscribe and time.monotonic() - since > SETTLED:
+        is_whole = all(f"~/{COMPLETE}" in each.subscribe for each in seen)
+        if is_whole and time.monotonic() - since > SETTLED:
             return seen
     raise TimeoutError(f"{name} was not whole on the graph within {DEADLINE:g} s: {seen}")
 

@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import NoReturn
 
 import rclpy
@@ -61,12 +62,11 @@ def serve(node: LiveNode) -> None:
         signal.signal(number, lambda *_: node.stopping.set())
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    try:
+    with ExitStack() as leaving:  # in the reverse order, each whatever the one before it raises
+        leaving.callback(node.destroy_node)
+        leaving.callback(executor.shutdown)
+        leaving.callback(node.close)
+        leaving.callback(node.stopping.set)
         node.begin()
         while not node.stopping.is_set():
             executor.spin_once(timeout_sec=TURN)
-    finally:
-        node.stopping.set()
-        node.close()
-        executor.shutdown()
-        node.destroy_node()

@@ -38,7 +38,7 @@ def played(graph, fault, repeats):
     ],
 )
 def test_a_lost_angle_is_answered_with_duty_0_named_and_over_when_the_sensor_is_back(graph, fault, text):
-    found, complaints = played(graph, fault, 2)
+    found, complaints = played(graph, fault, 1)
     assert all(each is not None for each in found["seconds"])
     assert all(found["returned"])
     told = [each for each in complaints if text in each.message and "duty 0" in each.message]

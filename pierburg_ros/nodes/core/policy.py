@@ -29,7 +29,7 @@ class Rights:
         )
 
 
-ABSOLUTE = ("/diagnostics", "/parameter_events", "/rosout", "/clock")
+ABSOLUTE = ("/diagnostics", "/parameter_events", "/rosout", "/clock", "/recorded_until")
 """Topics that a namespace does not move."""
 _GROUPS = (("topics", "publish"), ("topics", "subscribe"), ("services", "reply"), ("services", "request"))
 
