@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.messages import Integers, Messages
-from pierburg_ros.recording.roles import Cast
+from pierburg_ros.recording.roles import Topics
 
 MEASURED = ("hall_voltage", "joint_states")
 """Roles whose messages are samples; those of the others hold until the next one."""
@@ -52,12 +52,12 @@ def check_forward(name: str, timed: Timed) -> None:
 class Clocks:
     """Times the messages of a recording, by the clock a person chose or else by the best one recorded."""
 
-    def __init__(self, cast: Cast, choice: str | None) -> None:
-        self.name = cast.bag.name
+    def __init__(self, topics: Topics, choice: str | None) -> None:
+        self.name = topics.bag.name
         self.choice = choice
-        self.joints = cast.find("joint_states") if choice in (None, "stamp") else None
+        self.joints = topics.find("joint_states") if choice in (None, "stamp") else None
         self.stamps = np.zeros(0, np.int64) if self.joints is None else cdr.stamp(self.joints)
-        self.ticks = cast.find("clock") if choice in (None, "clock") else None
+        self.ticks = topics.find("clock") if choice in (None, "clock") else None
         self.sources = {
             "stamp": self.stamped,
             "clock": self.clocked,

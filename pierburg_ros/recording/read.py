@@ -18,7 +18,7 @@ from pierburg_ros.recording.formats import cdr, format_of
 from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
-from pierburg_ros.recording.roles import ROLES, Cast, check_names, last_name
+from pierburg_ros.recording.roles import ROLES, Topics, check_names, last_name
 
 SOURCES = ("stamp", "clock", "publish", "log")
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
@@ -48,7 +48,7 @@ def read_recording(path: str | Path, *, time: str | None = None, topics: Mapping
     with reading(path, "a recording"), np.errstate(all="ignore"):
         found = format_of(path).read(path, wanted)
         check_names(named, COLUMNS if isinstance(found, Columns) else ROLES)
-        made = tabulated(found, time, named) if isinstance(found, Columns) else assemble(Cast(found, named), time)
+        made = tabulated(found, time, named) if isinstance(found, Columns) else assemble(Topics(found, named), time)
         check_bounds(made)
     return made
 
@@ -69,12 +69,12 @@ def check_bounds(recording: Recording) -> None:
         )
 
 
-def assemble(cast: Cast, choice: str | None) -> Recording:
-    """The recording that the messages of `cast` make, timed by the `choice` of clock."""
-    name = cast.bag.name
-    found = {"measured": measured(cast), "duty": duty(cast)}
-    found |= {role: (role, messages) for role in OPTIONAL if (messages := cast.find(role)) is not None}
-    clocks = Clocks(cast, choice)
+def assemble(topics: Topics, choice: str | None) -> Recording:
+    """The recording that the messages of `topics` make, timed by the `choice` of clock."""
+    name = topics.bag.name
+    found = {"measured": measured(topics), "duty": duty(topics)}
+    found |= {role: (role, messages) for role in OPTIONAL if (messages := topics.find(role)) is not None}
+    clocks = Clocks(topics, choice)
     timed: dict[str, Timed] = {}
     for signal, (role, messages) in found.items():
         times = clocks.time(role, messages)
@@ -126,28 +126,28 @@ def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
     return time, values
 
 
-def measured(cast: Cast) -> tuple[str, Messages]:
+def measured(topics: Topics) -> tuple[str, Messages]:
     """Role and messages of what was measured; Hall voltage before position."""
     for role in ("hall_voltage", "joint_states"):
-        if (messages := cast.find(role)) is not None:
+        if (messages := topics.find(role)) is not None:
             return role, messages
-    raise missing(cast, "measured signal", ("hall_voltage", "joint_states"))
+    raise missing(topics, "measured signal", ("hall_voltage", "joint_states"))
 
 
-def duty(cast: Cast) -> tuple[str, Messages]:
+def duty(topics: Topics) -> tuple[str, Messages]:
     """Role and messages of the input: what the plant says it applied, unless a person names a duty."""
-    for role in ("duty",) if "duty" in cast.named else ("applied_duty", "duty"):
-        if (messages := cast.find(role)) is not None:
+    for role in ("duty",) if "duty" in topics.named else ("applied_duty", "duty"):
+        if (messages := topics.find(role)) is not None:
             return role, messages
-    raise missing(cast, "duty", ("duty", "applied_duty"))
+    raise missing(topics, "duty", ("duty", "applied_duty"))
 
 
-def missing(cast: Cast, what: str, roles: tuple[str, ...]) -> InputError:
+def missing(topics: Topics, what: str, roles: tuple[str, ...]) -> InputError:
     """What to say where none of `roles` has messages."""
-    name, option = cast.bag.name, f"--topic {roles[0]}=/your/topic"
-    if cast.bag.count == 0:
+    name, option = topics.bag.name, f"--topic {roles[0]}=/your/topic"
+    if topics.bag.count == 0:
         return InputError(f"{name} holds no messages, expected {' or '.join(roles)} and more. Record again.")
-    empty = [topic for topic in (cast.topic(role) for role in roles) if topic is not None]
+    empty = [topic for topic in (topics.topic(role) for role in roles) if topic is not None]
     if empty:
         return InputError(f"{name} has no messages on {empty[0]}, expected a {what}. Name another with {option}.")
-    return InputError(f"{name} has no {what} topic (found: {cast.listed()}). Name it with {option}.")
+    return InputError(f"{name} has no {what} topic (found: {topics.listed()}). Name it with {option}.")

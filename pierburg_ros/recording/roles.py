@@ -44,8 +44,8 @@ def check_names(named: Mapping[str, str], known: Mapping[str, str]) -> None:
 
 
 @dataclass(frozen=True)
-class Cast:
-    """Finds the messages of a role in `bag`; `named` maps roles to topics that a person chose."""
+class Topics:
+    """Finds the messages of a role among the topics of `bag`; `named` maps roles to topics that a person chose."""
 
     bag: Bag
     named: Mapping[str, str] = field(default_factory=dict)
