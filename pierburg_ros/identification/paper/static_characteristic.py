@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -74,7 +75,8 @@ def _line(points: list[Settled], time_constant: float) -> StaticCharacteristic:
     factor = float(stats.t.ppf(0.975, freedom))
 
     def estimate(value: float, slope: tuple[float, float, float]) -> Estimate:
-        half = factor * float(np.sqrt(np.array(slope) @ covariance @ np.array(slope)))
+        variance = float(np.array(slope) @ covariance @ np.array(slope))
+        half = factor * math.sqrt(max(variance, 0.0))  # rounding may take it below 0
         return Estimate(value, (value - half, value + half))
 
     return StaticCharacteristic(
