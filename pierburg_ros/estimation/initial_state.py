@@ -106,6 +106,19 @@ def first_standstill(measured: Signal, noise: float) -> int | None:
     return int(np.argmax(lasting)) + EVEN // 2 if lasting.any() else None
 
 
+def first_rest(measured: Signal, noise: float) -> int | None:
+    """The first sample of `measured` from which the shaft stands still and no longer creeps; None where there is none.
+
+    It rests where the means of two successive stretches of `EVEN` samples differ by no more than their noise.
+    """
+    sample = first_standstill(measured, noise)
+    if sample is None:
+        return None
+    means = np.array([np.mean(measured[at : at + EVEN]) for at in range(sample, measured.size - EVEN + 1, EVEN)])
+    rests = np.abs(np.diff(means)) <= 2.0 * noise * np.sqrt(2.0 / EVEN) + ROUNDING
+    return sample + EVEN * int(np.argmax(rests)) if rests.any() else None
+
+
 def _stays(measured: Signal, noise: float) -> int:
     """How many samples from the first one stay where it is, within five times the noise."""
     still = np.abs(measured - np.median(measured[:5])) <= 5.0 * noise + ROUNDING

@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_standstill, from_standstill
+from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
@@ -97,11 +97,11 @@ def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Piece
 
 
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
-    """The first part, and the others from their first standstill on: where the shaft is in motion after a gap, a
-    simulation that begins a little off would rest elsewhere."""
+    """The first part, and the others from where the shaft first rests: where it is in motion after a gap, a simulation
+    that begins a little off would rest elsewhere."""
     yield parts[0]
     for part in parts[1:]:
-        sample = first_standstill(part.measured, noise_of(part.time, part.measured))
+        sample = first_rest(part.measured, noise_of(part.time, part.measured))
         if sample is not None:
             yield replace(part, time=part.time[sample:], measured=part.measured[sample:])
 

@@ -10,6 +10,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import all_training, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.initial_state import first_rest
 from pierburg_ros.estimation.intervals import covariance
 from pierburg_ros.estimation.pieces import pieces
 from pierburg_ros.estimation.run import parts_of
@@ -67,6 +68,14 @@ def test_what_follows_a_gap_begins_at_a_standstill() -> None:
     assert len(cut.left_out) > 3
     for part in parts[1:]:
         assert np.ptp(part.measured[:25]) < 10.0 * NOISE
+
+
+def test_a_piece_begins_where_the_shaft_no_longer_creeps() -> None:
+    time = 0.002 * np.arange(2000)
+    creeping = 1.0 + 0.02 * np.exp(-time / 0.15)
+    rest = first_rest(creeping + NOISE * np.random.default_rng(3).standard_normal(time.size), NOISE)
+    assert rest is not None and creeping[rest] - 1.0 < 1.5 * NOISE
+    assert first_rest(1.0 + time, NOISE) is None
 
 
 def test_the_true_model_leaves_the_noise_and_what_the_losses_add() -> None:

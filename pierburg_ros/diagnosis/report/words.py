@@ -118,10 +118,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
         return text
     warning = " ".join(data.warnings)
     added = math.sqrt(max(data.noise**2 - data.sensor_noise**2, 0.0))
-    if added > data.sensor_noise:
+    hidden = added > data.sensor_noise
+    if hidden:
         warning += f" What is missing may move the signal by {added:.2g} {data.actuator.unit}, more than its noise."
-        if verdict != "missing_physics":
-            warning += " Nothing can be concluded: record again with fewer processes beside."
+    if verdict == "unexplained" or (hidden and verdict != "missing_physics"):
+        warning += " Nothing can be concluded: record again with fewer processes beside."
     return f"{warning} {text}"
 
 
