@@ -1,6 +1,6 @@
 """A process that plays an actuator with a sensor that breaks on cue, and measures how its controller answers.
 
-python scripted_sensor.py FAULT REPEATS prints one JSON line: seconds from each fault to duty 0, and the duties.
+python scripted_sensor.py FAULT REPEATS prints one JSON line: seconds from each fault to duty 0, or swings at spikes.
 The shaft follows the sliding equation of the paper, so that nothing of the simulator is needed here.
 """
 
@@ -20,6 +20,7 @@ PERIOD = 0.002
 HEALTHY = 0.6  # s between two faults
 PATIENCE = 20.0  # s until an answer is given up
 SETPOINTS = (0.8, 0.5)  # rad
+SPIKE_EVERY = 100  # samples
 
 
 def turned(angle: float, duty: float, dt: float) -> float:
@@ -55,7 +56,7 @@ class Bench:
         if not broken:
             self.frozen = good
             return good
-        spike = 5.0 if self.samples % 100 == 0 else good
+        spike = 5.0 if self.samples % SPIKE_EVERY == 0 else good
         faults = {"zero": 0.0, "five": 5.0, "nan": math.nan, "frozen": self.frozen, "silence": None, "spikes": spike}
         return faults[self.fault]
 
@@ -90,12 +91,18 @@ class Bench:
             answered = answered or zero
         return None if answered is None else answered - begun
 
-    def spiked(self, seconds: float) -> list[float]:
-        """Duties of a settled loop under spikes."""
-        begun, count = time.monotonic(), len(self.duties)
-        while time.monotonic() - begun < seconds:
-            self.tick(broken=True)
-        return [duty for _, duty in self.duties[count:]]
+    def spiked(self, spikes: int) -> list[float]:
+        """For each answered spike how far the duties up to half the way to the next one are from the one before it."""
+        swings = []
+        for _ in range(spikes):
+            while (self.samples + 1) % SPIKE_EVERY:
+                self.tick(broken=True)
+            before, count = self.duty, len(self.duties)
+            for _ in range(SPIKE_EVERY // 2):
+                self.tick(broken=True)
+            if answers := self.duties[count:]:
+                swings.append(max(abs(duty - before) for _, duty in answers))
+        return swings
 
 
 def main() -> None:
@@ -110,11 +117,8 @@ def main() -> None:
         bench.setpoint.publish(Float64(data=SETPOINTS[repeat % 2]))
         found["returned"].append(bench.healthy(HEALTHY))
         if fault == "spikes":
-            before = [duty for _, duty in bench.duties[-100:]]
             found["seconds"].append(None)
-            found["before"] = [min(before), max(before)]
-            duties = bench.spiked(2.0)
-            found["under_spikes"] = [min(duties), max(duties)]
+            found["swings"] = bench.spiked(11)
             continue
         if fault == "frozen":
             bench.setpoint.publish(Float64(data=1.4))
