@@ -25,6 +25,7 @@ from pierburg_ros.nodes.drained import Drained, Unserved
 from pierburg_ros.nodes.parameters import LiveNode
 from pierburg_ros.nodes.running import run
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.model_file import read_model
 
 PERIOD = 0.1
 """Time between two looks at the topics [s]: as long as a movement that ended may wait to be judged."""
@@ -140,7 +141,7 @@ class MonitorNode(LiveNode):
 
 def watched_model(actuator: str, path: str) -> Model:
     """The model of a file, or the nominal one of an actuator; InputError where its supply is none of its parameters."""
-    model = Model.read(path) if path else Model.nominal(read_actuator(actuator))
+    model = read_model(path) if path else Model.nominal(read_actuator(actuator))
     if model.values.get("supply_voltage", 0.0) == 0.0:
         raise InputError(
             f"Actuator {model.actuator.name} has no supply_voltage; the monitor follows actuators that are driven by "

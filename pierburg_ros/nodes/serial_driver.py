@@ -114,9 +114,7 @@ class SerialDriverNode(LiveNode):
         angle, velocity = self._sensor.take(state.hall_voltage, elapsed)
         self._hall.publish(messages.number(state.hall_voltage))
         self._applied.publish(messages.number(state.duty))
-        joint = messages.joint_state(received.time, angle, velocity)
-        joint.name = [self.values["joint"]]
-        self._joints.publish(joint)
+        self._joints.publish(messages.joint_state(self.values["joint"], received.time, angle, velocity))
         if math.isfinite(state.supply_voltage):
             self._supply.publish(messages.number(state.supply_voltage))
         if last is None or last.state.enabled != state.enabled:

@@ -1,12 +1,15 @@
 """The monitor as a process: it follows a loop over DDS, warns of a drift, and has the recording split."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 pytest.importorskip("rclpy")
 
 from diagnostic_msgs.msg import DiagnosticArray
+
+from pierburg_ros.nodes.monitor import watched_model
 
 pytestmark = pytest.mark.ros
 
@@ -69,3 +72,9 @@ def test_duty_and_hall_voltage_alone_are_followed(graph):
     graph.start("plant", "rate:=100.0")
     graph.start("controller")
     graph.until(lambda: value(graph, "samples") > 200, "samples")
+
+
+def test_it_watches_the_model_of_a_file_or_the_nominal_one(tmp_path):
+    nominal = watched_model("pierburg", "")
+    replace(nominal, values={**nominal.values, "armature_resistance": 5.0}).write(tmp_path / "model.yaml")
+    assert watched_model("pierburg", str(tmp_path / "model.yaml")).values["armature_resistance"] == 5.0
