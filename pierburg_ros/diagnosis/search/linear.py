@@ -18,6 +18,9 @@ from pierburg_ros.plant import Model
 REDATED = np.arange(-4.0, 4.1, 0.25)
 """Where around its first estimate the moment of a change is looked for again [s]. Work: 33 simulations; a quarter of a
 second apart, which a descent bridges."""
+LEVEL = 1e-6
+"""Difference in cost, as a share of it, within which two moments are on one step. Derived: a moment that does not count
+changes the cost by rounding alone, below 1e-12."""
 
 
 def promised(
@@ -86,12 +89,34 @@ def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list
 
 
 def redated(estimator: Estimator, fit: Fit) -> Fit:
-    """A fit with the best moment of its change among those around it: the cost has many local minima there."""
+    """A fit with the best moment of its change among those around it: the cost has many local minima there.
+
+    While the shaft rests the moment of a change hardly counts, so the cost has steps. A step may be lower than the one
+    beside it only once the other values are fitted on it: the next steps on both sides are tried while that gains.
+    """
+    best = estimator.fit(fit.explanation, min(_moments(estimator, fit), key=lambda moment: moment[0])[1])
+    best = min(fit, best, key=lambda found: found.chi2)
+    while (moved := _on_next_steps(estimator, best)).chi2 < (1.0 - LEVEL) * best.chi2:
+        best = moved
+    return best
+
+
+def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
+    """The better fit from the next steps of the cost before and after the moment of `fit`, or `fit` itself."""
+    moments = _moments(estimator, fit)
+    middle = REDATED.size // 2
+    sides = (moments[:middle][::-1], moments[middle + 1 :])
+    elsewhere = [[values for chi2, values in side if abs(chi2 - fit.chi2) > LEVEL * fit.chi2] for side in sides]
+    fits = [estimator.fit(fit.explanation, side[0]) for side in elsewhere if side]
+    return min([fit, *fits], key=lambda found: found.chi2)
+
+
+def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, float]]]:
+    """The cost and the values of `fit` with each of the moments around that of its change."""
     name = f"{fit.explanation.changed}{WHEN}"
     coordinates = estimator.coordinates(fit.explanation)
-    moments = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]
-    best = min((fit.values, *moments), key=lambda values: estimator.chi2_at(fit.explanation, values))
-    return estimator.fit(fit.explanation, {**fit.values, name: best[name]})
+    moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]
+    return [(estimator.chi2_at(fit.explanation, values), values) for values in moved]
 
 
 def _change(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
