@@ -1,12 +1,14 @@
 """What one linear step promises, against problems whose answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, data_on, recording
+from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, promised, promised_by_drift
-from pierburg_ros.estimation.data import data_of
+from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, promised, promised_by_drift, redated
+from pierburg_ros.estimation.data import all_training, data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.estimation.run import Switch
@@ -75,3 +77,19 @@ def test_a_change_is_dated_by_its_slope() -> None:
     assert starts[0]["armature_resistance" + AFTER] == pytest.approx(4.4, rel=0.05)
     apart = abs(starts[0]["armature_resistance" + WHEN] - starts[1]["armature_resistance" + WHEN])
     assert apart > 0.05 * 12.0 * 0.99
+
+
+@pytest.mark.parametrize("off", [-6.0, 2.0, 6.0])
+def test_a_change_is_dated_across_the_steps_of_the_cost(off: float) -> None:
+    """A descent from so many seconds beside the moment stays there; from step to step the moment is found."""
+    name, true = "spring_stiffness", 1.13 * NOMINAL.values["spring_stiffness"]
+    plain = recording({}, duration=40.0)
+    hall = data_of([plain], NOMINAL).runs[0].simulated(NOMINAL, Switch(NOMINAL.with_values({name: true}), 15.0))
+    noisy = hall + NOISE * np.random.default_rng(0).standard_normal(hall.size)
+    made = replace(plain, measured=noisy)
+    estimator = Estimator(all_training(data_of([made], NOMINAL)), NOMINAL)
+    beside = estimator.fit(Explanation(changed=name), {**NOMINAL.values, name + AFTER: true, name + WHEN: 15.0 + off})
+    assert beside.ratio > 2.0
+    dated = redated(estimator, beside)
+    assert dated.ratio < 1.05
+    assert dated.values[name + AFTER] == pytest.approx(true, rel=0.01)
