@@ -87,7 +87,7 @@ class Model:
     def _packed(self) -> np.ndarray:
         a = self.actuator
         values = {**dict.fromkeys(BASE, 0.0), **self.values}
-        return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.residual_torque)
+        return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.scales, self.residual_torque)
 
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)

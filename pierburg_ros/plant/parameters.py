@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.actuators import Scales
 from pierburg_ros.effects import EFFECTS, Effect
 
 RESIDUAL_NODES = 24
@@ -39,10 +40,13 @@ RESIDUAL = np.dtype(
     ]
 )
 
+OWN = np.dtype([("torque", np.float64), ("angle", np.float64), ("time", np.float64)])
+"""What is large for the actuator [N.m, rad, s]: the tolerances of the kernels are shares of these."""
+
 PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
-    + [("serial", np.int64), ("finest", np.float64), ("measures_position", np.bool_)]
+    + [("own", OWN), ("serial", np.int64), ("finest", np.float64), ("measures_position", np.bool_)]
     + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
@@ -59,6 +63,7 @@ def pack(
     lower_stop: float,
     upper_stop: float,
     measures_position: bool,
+    scales: Scales,
     residual: Mapping[str, Any] | None = None,
 ) -> np.ndarray:
     """Parameter record, shape (1,), from flat dotted names.
@@ -75,6 +80,7 @@ def pack(
         record[effect.id] = tuple(values[f"{effect.id}.{name}"] for name in effect.names)
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
     record["measures_position"] = measures_position
+    record["own"] = scales.torque, scales.angle, scales.time
     _pack_residual(record, residual)
     present = [effect for effect in EFFECTS if effect.acts(values)]
     creeping = {effect.stage for effect in present if effect.state and effect.stage in _OUTSIDE}
