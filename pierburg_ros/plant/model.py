@@ -14,8 +14,9 @@ import yaml
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
+from pierburg_ros.effects.effect import DRIVES, SENSORS
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
+from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_NODES, pack
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
 """Parameters of effects that keep above or below a base parameter."""
@@ -81,8 +82,9 @@ class Model:
     @cached_property
     def _packed(self) -> np.ndarray:
         a = self.actuator
-        values = {**dict.fromkeys(BASE, 0.0), **self.values}
-        return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.residual_torque)
+        values = {**NEUTRAL, **self.values}
+        kinds = DRIVES.index(a.drive), SENSORS.index(a.quantity)
+        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.residual_torque)
 
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)
