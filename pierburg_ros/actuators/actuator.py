@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from pierburg_ros.actuators.units import Motion, unit_of
-from pierburg_ros.effects.effect import Drive, Load, Sensor
+from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
 
 Input = Literal["duty", "current", "torque"]
@@ -93,6 +93,10 @@ class Actuator:
     def has_stops(self) -> bool:
         """Whether anything ends its travel."""
         return math.isfinite(self.lower_stop) or math.isfinite(self.upper_stop)
+
+    def obstacle(self, effect: Effect) -> str:
+        """Why `effect` cannot act in this actuator, in words; nothing where it can."""
+        return effect.obstacle(self.drive, self.load, self.quantity, self.has_stops)
 
     @property
     def sensor_span(self) -> float:

@@ -17,7 +17,7 @@ from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import parsed, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
-SHIPPED = ("pierburg", "xl330")
+SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
 """Actuators that come with the package."""
 
 _MOTOR = {"torque_constant", "gear_ratio"}
