@@ -129,6 +129,8 @@ class _Description(_Strict):
         for name, parameter in self.parameters.items():
             if name in _POSITIVE and not parameter.minimum >= SMALLEST:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum above 0")
+            if name == "supply_voltage" and not parameter.nominal > 0.0:
+                raise ValueError("supply_voltage is nominally 0; expected the voltage that drives the motor")
             if name in _MAGNITUDES and not parameter.minimum >= 0.0:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum of 0 or more")
             if max(abs(parameter.minimum), abs(parameter.maximum)) > LARGEST:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
 from pierburg_ros.effects.effect import DRIVES, SENSORS
 from pierburg_ros.errors import InputError
@@ -74,6 +74,11 @@ class Model:
             )
         declared = DECLARED[name]
         return min(declared.minimum, 0.0), declared.maximum
+
+    @cached_property
+    def scales(self) -> Scales:
+        """What is large for the actuator as described."""
+        return Scales.of(self.actuator)
 
     def record(self) -> np.ndarray:
         """The parameter record that the kernels read, shape (1,); one record for all runs of a model."""
