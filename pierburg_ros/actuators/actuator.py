@@ -108,7 +108,11 @@ class Actuator:
     @property
     def unit(self) -> str:
         """Unit of the measured quantity."""
-        return unit_of(SENSED[self.quantity], self.motion)
+        return self.shown(SENSED[self.quantity])
+
+    def shown(self, unit: str) -> str:
+        """A declared `unit` as this actuator has it: every output says it so."""
+        return unit_of(unit, self.motion)
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -89,7 +89,7 @@ class Model:
         a = self.actuator
         values = {**NEUTRAL, **self.values}
         kinds = DRIVES.index(a.drive), SENSORS.index(a.quantity)
-        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.residual_torque)
+        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.scales, self.residual_torque)
 
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)

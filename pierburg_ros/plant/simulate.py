@@ -18,8 +18,8 @@ from pierburg_ros.plant.state import STATE, new_state, place
 from pierburg_ros.plant.torques.sensor import measured, quantised
 from pierburg_ros.workers import workers
 
-LONG_BEFORE = 10.0
-"""Time [s] after which neither a delayed command nor a current is still on its way."""
+LONG_BEFORE = 1e9
+"""Time [s] after which neither a delayed command nor a current is still on its way: longer than any accepted one."""
 
 
 @dataclass(frozen=True)
