@@ -130,10 +130,8 @@ def diagnosed(case: str, actuator: Actuator, gauge: Gauge, jobs: int | None) -> 
 
 def said(found: Diagnosis, gauge: Gauge) -> dict[str, Any]:
     """Verdict, names, values and windows, brought back from the units of `gauge`."""
-    units = {"V": "rad"} if found.quantity == "position" else {}
     values = {
-        f"{effect.id}.{name}": estimate.value
-        / gauge.factor(f"{effect.id}.{name}", units.get(estimate.unit, estimate.unit))
+        f"{effect.id}.{name}": estimate.value / gauge.factor(f"{effect.id}.{name}", estimate.unit)
         for effect in found.effects
         for name, estimate in effect.parameters.items()
         if estimate.value is not None

@@ -12,13 +12,15 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.effects import DECLARED
+from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.parameter import Parameter
 from pierburg_ros.recording import Channel, Recording
+from pierburg_ros.recording.recording import INPUTS, UNITS
 
 POWERS = {
     "1": (0, 0, 0),
     "V": (0, 0, 0),
+    "A": (1, -1, 1),
     "N.m": (1, 0, 0),
     "N.m/rad": (1, 0, -1),
     "N.m/rad^3": (1, 0, -3),
@@ -59,8 +61,7 @@ class Gauge:
         """Values by dotted name in these units."""
         units = {name: parameter.unit for name, parameter in actuator.parameters.items()}
         units |= {name: declared.unit for name, declared in DECLARED.items()}
-        if actuator.quantity == "position":
-            units = {name: "rad" if unit == "V" and "." in name else unit for name, unit in units.items()}
+        units[STEP] = UNITS[actuator.quantity]
         return {name: value * self.factor(name, units[name]) for name, value in values.items()}
 
     def actuator(self, actuator: Actuator) -> Actuator:
@@ -91,16 +92,18 @@ class Gauge:
     def recording(self, recording: Recording) -> Recording:
         """The recording in these units."""
 
-        def later(channel: Channel | None) -> Channel | None:
-            return channel and Channel(channel.time * self.time, channel.values)
+        def given(channel: Channel, factor: float = 1.0) -> Channel:
+            return Channel(channel.time * self.time, channel.values * factor)
 
-        duty = later(recording.duty)
-        assert duty is not None
         return replace(
             recording,
             time=recording.time * self.time,
-            measured=recording.measured * (self.angle if recording.quantity == "position" else 1.0),
-            duty=duty,
-            supply_voltage=later(recording.supply_voltage),
-            enabled=later(recording.enabled),
+            measured=recording.measured * self.measured(recording.quantity),
+            command=given(recording.command, self.factor(recording.input, INPUTS[recording.input])),
+            supply_voltage=recording.supply_voltage and given(recording.supply_voltage),
+            enabled=recording.enabled and given(recording.enabled),
         )
+
+    def measured(self, quantity: str) -> float:
+        """By what the measured values are multiplied."""
+        return self.factor(quantity, UNITS[quantity])

@@ -49,7 +49,7 @@ def diagnosed(recording: Recording, actuator: Actuator, gauge: Gauge) -> Diagnos
 
 def said(found: Diagnosis, gauge: Gauge) -> dict[str, Any]:
     """Everything that is said but for sentences with numbers, brought back from the units of `gauge`."""
-    measured = gauge.angle if found.quantity == "position" else 1.0
+    measured = gauge.measured(found.quantity)
     by = gauge.factor
     return {
         "verdict": found.verdict,

@@ -31,7 +31,7 @@ def signal(actuator: Actuator, effect: str | None, gauge: Gauge) -> np.ndarray:
         model = model.with_values(EFFECT[effect].typical_values(model.values, model.scales))
     changed = Model.nominal(gauge.actuator(actuator)).with_values(gauge.values(model.values, actuator))
     made = simulate(changed, Inputs(TIME * gauge.time, DUTY), TIME * gauge.time)
-    return made / (gauge.angle if actuator.quantity == "position" else 1.0)
+    return made / gauge.measured(actuator.quantity)
 
 
 def acting(gauge: Gauge) -> list[tuple[Actuator, str | None]]:

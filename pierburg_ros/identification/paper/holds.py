@@ -64,7 +64,7 @@ def angle_of(recording: Recording, actuator: Actuator) -> Signal:
 
 def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     """The stretches of constant duty, in order, each cut to its longest part clear of the stops."""
-    duty = recording.duty.at(recording.time, before=0.0)
+    duty = recording.command.at(recording.time, before=0.0)
     angle = angle_of(recording, actuator)
     own = Scales.of(actuator)
     margin = STOP_MARGIN * own.angle

@@ -66,8 +66,8 @@ def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
     """The upward steps of duty that find the shaft on the closed stop, each until the duty changes again."""
     angle, own = angle_of(recording, actuator), Scales.of(actuator)
     margin, found = STOP_MARGIN * own.angle, []
-    times = [*recording.duty.time, np.nextafter(recording.time[-1], np.inf)]
-    for start, end, duty in zip(times[:-1], times[1:], recording.duty.values, strict=True):
+    times = [*recording.command.time, np.nextafter(recording.time[-1], np.inf)]
+    for start, end, duty in zip(times[:-1], times[1:], recording.command.values, strict=True):
         inside = (recording.time >= start) & (recording.time < end)
         before = (recording.time < start) & (recording.time >= start - REST * own.time)
         if end - start < SHORTEST * own.time or not before.any() or np.mean(angle[before]) > 0.5 * margin:
