@@ -13,17 +13,24 @@ Readable: TypeAlias = Recording | str | Path
 """A recording, or where one lies."""
 
 
-def read(path: str | Path, *, time: str | None = None, topics: Mapping[str, str] | None = None) -> Recording:
+def read(
+    path: str | Path,
+    *,
+    time: str | None = None,
+    topics: Mapping[str, str] | None = None,
+    signals: str | Path | None = None,
+) -> Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
     A CSV has a header with `time` [s], `duty` [1, from -1 to 1] and `hall_voltage` [V] or `position` [rad].
-    `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock: stamp, clock, publish or
-    log. The result has `time` [s] and `measured` [V or rad], both of shape (samples,), and the channels that acted.
+    `signals` is the path of a signal map: the topic and field, or the column, of each signal, with its unit. `topics`
+    names the topic (in a CSV the column) of a signal; `time` chooses the clock: stamp, clock, publish or log. The
+    result has `time` [s] and `measured` [V or rad], both of shape (samples,), and the channels that acted.
     InputError says what is missing, and how to name it.
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
-    return read_recording(path, time=time, topics=topics)
+    return read_recording(path, time=time, topics=topics, signals=signals)
 
 
 def recordings_of(given: Readable | Sequence[Readable]) -> list[Recording]:
