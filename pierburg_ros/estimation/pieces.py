@@ -45,9 +45,9 @@ def pieces(recording: Recording, model: Model) -> Pieces:
         return Pieces([recording], 0.0, ())
     per_radian = 1.0 / abs(angle_per_unit(model))
     starts, ends = (np.array([span[place] for span in unknown]) for place in (0, 1))
-    moved = _top_speed(model) * (ends - starts) * _doubt(recording.duty, starts, ends) * per_radian
+    moved = _top_speed(model) * (ends - starts) * _doubt(recording.command, starts, ends) * per_radian
     doubtful = moved > SEEN * noise_of(recording.time, recording.measured)
-    filled = replace(recording, duty=_halved(recording.duty, starts[~doubtful], ends[~doubtful]))
+    filled = replace(recording, command=_halved(recording.command, starts[~doubtful], ends[~doubtful]))
     left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
     remembered = min(_memory(model), recording.duration)
     added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration

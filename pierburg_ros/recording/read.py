@@ -5,7 +5,7 @@ Parameters, logs, diagnostics, metadata and attachments are never looked at.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from pierburg_ros.recording.formats.messages import Bag, Wanted
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
-from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, SIGNALS, TIME, last_name
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, SIGNALS, TIME, in_order, last_name
 from pierburg_ros.recording.tables import Tables, read_tables, tabulated
 from pierburg_ros.recording.topics import TICKS, Found, Topics
 
@@ -39,12 +39,14 @@ def read_recording(
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
     signals: str | Path | SignalMap | None = None,
+    preferred: Collection[str] = (),
 ) -> Recording:
     """The recording at `path`.
 
     `signals` is a signal map or its file; `topics` names the topic (in a CSV the column) of a signal, e.g.
     {"duty": "/bench/pwm"}, in place of the map's; `time` chooses the clock, one of stamp, clock, publish and log,
-    where the best one recorded is not wanted.
+    where the best one recorded is not wanted. `preferred` are the input and the quantity to take where the recording
+    holds several, e.g. ("current", "speed").
     """
     path, chosen = Path(path), signal_map(signals, topics or {})
     if time is not None and time not in SOURCES:
@@ -52,9 +54,9 @@ def read_recording(
     with reading(path, "a recording"), np.errstate(all="ignore"):
         found = read_tables(path, chosen) if chosen.files else format_of(path).read(path, wanted(chosen))
         if isinstance(found, Bag):
-            made = assemble(Topics(found, chosen), time)
+            made = assemble(Topics(found, chosen), time, preferred)
         else:
-            made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen)
+            made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen, preferred)
         check_bounds(made)
     return made
 
@@ -69,8 +71,8 @@ def wanted(chosen: SignalMap) -> Wanted:
 def check_bounds(recording: Recording) -> None:
     """Refuse what no bench gives: values beyond any sensor, and times that no motion needs."""
     check_magnitude(f"{recording.name}: {recording.quantity}", recording.measured)
-    for signal in ("duty", *OPTIONAL):
-        channel = getattr(recording, signal)
+    channels = {recording.input: recording.command, **{signal: getattr(recording, signal) for signal in OPTIONAL}}
+    for signal, channel in channels.items():
         if channel is not None:
             check_magnitude(f"{recording.name}: {signal}", channel.values)
             check_magnitude(f"{recording.name}: time of {signal} [s]", channel.time)
@@ -82,12 +84,12 @@ def check_bounds(recording: Recording) -> None:
         )
 
 
-def assemble(topics: Topics, choice: str | None) -> Recording:
+def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()) -> Recording:
     """The recording that the messages of `topics` make, timed by the `choice` of clock."""
     name = topics.bag.name
     found = {
-        "measured": first_of(topics, MEASURED, "measured signal"),
-        "duty": first_of(topics, DRIVING, "duty"),
+        "measured": first_of(topics, MEASURED, preferred, "measured signal"),
+        "command": first_of(topics, DRIVING, preferred),
     }
     found |= {signal: each for signal in OPTIONAL if (each := topics.find(signal)) is not None}
     timed = timed_by(Clocks(topics, choice), found)
@@ -95,12 +97,19 @@ def assemble(topics: Topics, choice: str | None) -> Recording:
         check_one_clock(name, timed["measured"], other)
     origin = timed["measured"].time[0]
     channels = {signal: Channel(*samples(name, times, int(origin))) for signal, times in timed.items()}
-    quantity = MEASURED[found["measured"].signal]
+    quantity, driven = MEASURED[found["measured"].signal], DRIVING[found["command"].signal]
     first = channels.pop("measured")
-    sources = dict.fromkeys(timed[signal].source for signal in ("measured", "duty"))
-    losses = lost({**channels, "measured": first}, timed, quantity)
+    sources = dict.fromkeys(timed[signal].source for signal in ("measured", "command"))
+    losses = lost({**channels, "measured": first}, timed, {"measured": quantity, "command": driven})
     return Recording(
-        name, quantity, first.time, first.values, **channels, time_source=", ".join(sources), losses=losses
+        name,
+        quantity,
+        first.time,
+        first.values,
+        **channels,
+        time_source=", ".join(sources),
+        losses=losses,
+        input=driven,
     )
 
 
@@ -111,7 +120,7 @@ def timed_by(clocks: Clocks, found: Mapping[str, Found]) -> dict[str, Timed]:
         times = clocks.time(each)
         if times is not None and times.time.size:
             timed[signal] = times
-        elif signal in ("measured", "duty", *ACTING):
+        elif signal in ("measured", "command", *ACTING):
             raise InputError(
                 f"{clocks.name}: {each.messages.topic} has no {clocks.choice} time, expected one for every message."
                 " Choose another clock with --time {stamp,clock,publish,log}."
@@ -124,16 +133,16 @@ def timed_by(clocks: Clocks, found: Mapping[str, Found]) -> dict[str, Timed]:
     return timed
 
 
-def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], quantity: str) -> tuple[Loss, ...]:
+def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], names: Mapping[str, str]) -> tuple[Loss, ...]:
     """What is missing in each signal: by its numbers, or else by pauses in what was measured and in the input."""
     found = []
     breaks = pauses(channels["measured"].time)
     for signal, channel in channels.items():
-        name = quantity if signal == "measured" else signal
+        name = names.get(signal, signal)
         sequence = timed[signal].messages.sequence[timed[signal].kept]
         if are_numbered(sequence):
             found.append(numbered_loss(name, channel.time, sequence))
-        elif signal in ("measured", "duty"):
+        elif signal in names:
             spans = breaks if signal == "measured" else silences(channel.time, channel.values, breaks)
             found.append(Loss(name, None, channel.time.size, spans))
     return tuple(loss for loss in found if loss.spans)
@@ -152,20 +161,20 @@ def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
     return time, values
 
 
-def first_of(topics: Topics, signals: Collection[str], what: str) -> Found:
-    """The first of `signals` that has messages; those that a person chose, and no others, where there are any."""
-    chosen = [signal for signal in signals if signal in topics.chosen.sources]
-    for signal in chosen or signals:
+def first_of(topics: Topics, signals: Mapping[str, str], preferred: Collection[str], what: str = "") -> Found:
+    """The first of `signals` that has messages; only those that a person chose where there are such."""
+    order = in_order(signals, topics.chosen.sources, preferred)
+    for signal in order:
         if (found := topics.find(signal)) is not None:
             return found
-    raise missing(topics, what, tuple(chosen or signals))
+    raise missing(topics, what or signals[order[0]], signals[order[0]], order)
 
 
-def missing(topics: Topics, what: str, signals: tuple[str, ...]) -> InputError:
-    """What to say where none of `signals` has messages."""
-    name, option = topics.bag.name, f"--topic {'duty' if 'duty' in signals else signals[0]}=/your/topic"
+def missing(topics: Topics, what: str, signal: str, signals: Sequence[str]) -> InputError:
+    """What to say where none of `signals` has messages; a person may name a topic for `signal`."""
+    name, option = topics.bag.name, f"--topic {signal}=/your/topic"
     if topics.bag.count == 0:
-        return InputError(f"{name} holds no messages, expected {' or '.join(signals)} and more. Record again.")
+        return InputError(f"{name} holds no messages, expected a measured signal and what drove it. Record again.")
     empty = [topic for topic in map(topics.topic_of, signals) if topic is not None]
     if empty:
         return InputError(f"{name} has no messages on {empty[0]}, expected a {what}. Name another with {option}.")

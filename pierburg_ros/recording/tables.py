@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from pierburg_ros.recording.formats import format_of
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.signal_map import SignalMap, TimeSource
-from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, near
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order, near
 
 
 @dataclass(frozen=True)
@@ -55,29 +55,34 @@ def columns_of(path: Path, chosen: SignalMap) -> Columns:
     return found
 
 
-def tabulated(tables: Tables, choice: str | None, chosen: SignalMap) -> Recording:
-    """The recording in `tables`; `choice` is a clock, which a table has not."""
+def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: Collection[str] = ()) -> Recording:
+    """The recording in `tables`; `choice` is a clock, which a table has not.
+
+    `preferred` are the input and the quantity to take where there are several.
+    """
     if choice is not None:
         raise InputError(f"{tables.name} has one clock, its time column; expected no --time. Leave it out.")
     reader = TableReader(tables, chosen)
-    driving, quantity = reader.first_of(DRIVING, "duty"), reader.first_of(MEASURED, "position")
-    measured = reader.channel(quantity)
+    driving, measuring = reader.first_of(DRIVING, preferred), reader.first_of(MEASURED, preferred)
+    driven, quantity = DRIVING[driving], MEASURED[measuring]
+    measured = reader.channel(measuring)
     origin = float(measured.time[0])
     measured, inputs = shifted(measured, origin), shifted(reader.channel(driving), origin)
     acting = {signal: shifted(reader.channel(signal), origin) for signal in OPTIONAL if reader.is_filled(signal)}
     breaks = pauses(measured.time)
     losses = (
-        Loss(MEASURED[quantity], None, measured.time.size, breaks),
-        Loss("duty", None, inputs.time.size, silences(inputs.time, inputs.values, breaks)),
+        Loss(quantity, None, measured.time.size, breaks),
+        Loss(driven, None, inputs.time.size, silences(inputs.time, inputs.values, breaks)),
     )
     return Recording(
         tables.name,
-        MEASURED[quantity],
+        quantity,
         measured.time,
         measured.values,
         inputs,
         time_source="column",
         losses=tuple(loss for loss in losses if loss.spans),
+        input=driven,
         **acting,
     )
 
@@ -122,15 +127,15 @@ class TableReader:
         """The numbers in the column of the signal."""
         return part.values(self.columns[signal])
 
-    def first_of(self, signals: Collection[str], usual: str) -> str:
-        """The first of `signals` that there is a column for, of those that a person chose if there are any."""
+    def first_of(self, signals: Mapping[str, str], preferred: Collection[str]) -> str:
+        """The first of `signals` that there is a column for; only those that a person chose where there are such."""
         for part in self.tables.of(()):
             self.check_clock(part)
-        chosen = [signal for signal in signals if signal in self.chosen.sources]
-        for signal in chosen or signals:
+        order = in_order(signals, self.chosen.sources, preferred)
+        for signal in order:
             if self.has(signal):
                 return signal
-        found = ", ".join(part.listed() for part in self.tables.of(()))
+        found, usual = ", ".join(part.listed() for part in self.tables.of(())), signals[order[0]]
         raise InputError(
             f"{self.tables.name} has no {usual} column (found: {found}), {FORM}. Name it with --topic {usual}=COLUMN."
         )

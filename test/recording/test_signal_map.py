@@ -47,7 +47,7 @@ def test_nested_fields_arrays_and_names_of_foreign_types_in_every_storage(tmp_pa
     assert recording.quantity == "position" and recording.time_source == "stamp"
     np.testing.assert_allclose(recording.time, 0.01 * steps, atol=1e-9)
     np.testing.assert_allclose(recording.measured, 1.5 - 0.02 * steps, atol=1e-12)
-    np.testing.assert_allclose(recording.duty.values, 0.3 * np.sin(0.3 * steps), atol=1e-7)
+    np.testing.assert_allclose(recording.command.values, 0.3 * np.sin(0.3 * steps), atol=1e-7)
     np.testing.assert_allclose(recording.supply_voltage.values, 13.0 + 0.01 * steps, atol=1e-12)
 
 
@@ -61,7 +61,7 @@ def test_a_sqlite_file_without_definitions_reads_standard_types(tmp_path, writte
 position: {topic: /joint_states, field: "position[elbow]"}
 """
     recording = read_recording(bag, signals=written(standard))
-    np.testing.assert_allclose(recording.duty.values, 0.05 * 10 * recording.measured)
+    np.testing.assert_allclose(recording.command.values, 0.05 * 10 * recording.measured)
     assert "bench/msg/Command has no definition in the file" in refusal(bag, written(MAP))
 
 
@@ -76,7 +76,7 @@ def test_the_time_may_be_any_field(tmp_path, written, field):
     bag = write_foreign(tmp_path / "bag", bench_run(late=lambda k: 0.004 * (k % 2)))
     text = MAP + f"time: {{topic: /motor/command, field: {field}}}\n"
     recording = read_recording(bag, signals=written(text))
-    np.testing.assert_allclose(recording.duty.time, 0.01 * np.arange(60), atol=1e-9)
+    np.testing.assert_allclose(recording.command.time, 0.01 * np.arange(60), atol=1e-9)
 
 
 def test_a_time_that_is_none_is_refused(tmp_path, written):
@@ -139,7 +139,7 @@ def test_a_map_undoes_what_was_done_to_the_numbers(tmp_path_factory, scale, offs
     recording = read_recording(path, signals=folder / "map.yaml")
     np.testing.assert_allclose(recording.measured, values, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(recording.time, 0.01 * np.arange(25), atol=1e-12)
-    np.testing.assert_allclose(recording.duty.values, 0.005 * np.arange(25), atol=1e-15)
+    np.testing.assert_allclose(recording.command.values, 0.005 * np.arange(25), atol=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     velocity = slope(run.time, angle, half)
     near = NEAR + 3.0 * spread
     place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
-    duty = np.where(place < 0, 0.0, run.inputs.duty[np.maximum(place, 0)])
+    duty = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])
     return Motion(
         time=run.time - run.time[0],
         angle=angle,

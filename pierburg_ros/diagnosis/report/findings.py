@@ -241,7 +241,7 @@ def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
     return {
         "time": run.time,
         "measured": run.measured,
-        "duty": run.inputs.duty[place],
+        "duty": run.inputs.command[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
         "final": run.simulated(conclusion.model, conclusion.final.switch),
