@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 
 from pierburg_ros.errors import printable
-from pierburg_ros.recording.inspection.guesses import Guess, by_signal, founded
+from pierburg_ros.recording.inspection.guesses import BY_RANGE, Guess, by_signal, is_still
 from pierburg_ros.recording.inspection.table_time import TimeGuess
 from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL
 
@@ -36,17 +36,18 @@ def draft(name: str, guesses: Iterable[Guess], time: TimeGuess | None, is_table:
 
 
 def group(found: dict[str, list[Guess]], signals: tuple[str, ...], wanted: str) -> list[str]:
-    """The lines of signals of which one is needed: the best founded counts, the others are possibilities."""
-    several = sorted(
-        ((*founded(each), place, each) for place, signal in enumerate(signals) for each in found.get(signal, [])),
-        key=lambda item: item[:3],
-    )
+    """The lines of signals of which one is needed; the others are possibilities.
+
+    It is the first of `signals` that moves and has its name, or else that has such a range.
+    """
+    several = [each for signal in signals for each in found.get(signal, [])]
+    several.sort(key=lambda each: (is_still(each), each.rank == BY_RANGE))
     if not several:
         return [
             f"# Nothing looks like {wanted}. Write one, as"
             f" {signals[-1]}: {{topic: /name, field: path}} or {signals[-1]}: {{column: NAME}}"
         ]
-    return [entry(each, place > 0) for place, (*_, each) in enumerate(several[: 1 + MOST_OTHERS])]
+    return [entry(each, place > 0) for place, each in enumerate(several[: 1 + MOST_OTHERS])]
 
 
 def entry(each: Guess, is_other: bool) -> str:

@@ -57,8 +57,9 @@ class Guess:
     rank: int
 
     def __str__(self) -> str:
-        """As people read it: `0 to 100: duty in percent?`."""
-        return f"{self.reason}: {self.signal.replace('_', ' ')} in {self.unit if self.unit != '1' else 'fractions'}?"
+        """As people read it: `0 to 100: duty [percent]?`."""
+        unit = {"1": "0 or 1" if self.signal == "enabled" else "fraction"}.get(self.unit, self.unit)
+        return f"{self.reason}: {self.signal.replace('_', ' ')} [{unit}]?"
 
 
 def guess(field: Field) -> Guess | None:
@@ -157,10 +158,10 @@ def by_signal(guesses: Iterable[Guess]) -> dict[str, list[Guess]]:
     found: dict[str, list[Guess]] = {}
     for each in guesses:
         found.setdefault(each.signal, []).append(each)
-    return {signal: sorted(several, key=founded) for signal, several in found.items()}
+    return {signal: sorted(several, key=lambda each: (is_still(each), each.rank)) for signal, several in found.items()}
 
 
-def founded(each: Guess) -> tuple[bool, int]:
-    """Sorts guesses: what moves before what stands still, then the best founded."""
+def is_still(each: Guess) -> bool:
+    """Whether the field has the same value all the time."""
     limits = each.field.limits
-    return limits is None or limits[0] == limits[1], each.rank
+    return limits is None or limits[0] == limits[1]

@@ -103,7 +103,7 @@ class Entry:
         self.check_keys(TIME_KEYS)
         unit = self.unit(("s",))
         if "unit" in self.given and unit.written not in TIME_UNITS:
-            raise self.wrong("unit", unit.written, f"one of {', '.join(TIME_UNITS)}")
+            raise self.wrong("unit", unit.written, self.units(("s",)))
         if self.kind() == "topic":
             return TimeSource(self.text("topic"), self.path(), (), unit.factor, self.origin)
         column = self.given["column"]
@@ -165,6 +165,8 @@ class Entry:
     @staticmethod
     def units(wanted: tuple[str, ...]) -> str:
         """What to give as a unit."""
+        if wanted == ("s",):
+            return f"one of {', '.join(TIME_UNITS)}"
         examples = {
             "1": "1, percent",
             "rad": "rad, deg, mrad",
