@@ -51,6 +51,24 @@ def test_nested_fields_arrays_and_names_of_foreign_types_in_every_storage(tmp_pa
     np.testing.assert_allclose(recording.supply_voltage.values, 13.0 + 0.01 * steps, atol=1e-12)
 
 
+@pytest.mark.parametrize("plugin", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
+def test_a_bag_that_was_split_is_one_recording(tmp_path, written, plugin):
+    run = bench_run()
+    parts = [write_foreign(tmp_path / f"part_{k}", run[start : start + 90], plugin) for k, start in ((0, 0), (1, 90))]
+    whole = tmp_path / "whole"
+    whole.mkdir()
+    names = []
+    for part in parts:
+        (file,) = (path for path in part.iterdir() if path.suffix in (".mcap", ".db3"))
+        names.append(file.rename(whole / file.name).name)
+    (whole / "metadata.yaml").write_text(f"rosbag2_bagfile_information: {{relative_file_paths: {names}}}\n")
+    recording = read_recording(whole, signals=written(MAP))
+    np.testing.assert_allclose(recording.measured, 1.5 - 0.02 * np.arange(60), atol=1e-12)
+    (whole / "metadata.yaml").unlink()
+    if plugin == StoragePlugin.MCAP:
+        assert "without metadata.yaml and with 2 MCAP files" in refusal(whole, written(MAP))
+
+
 def test_a_sqlite_file_without_definitions_reads_standard_types(tmp_path, written):
     bag = write_foreign(tmp_path / "bag", bench_run(), StoragePlugin.SQLITE3)
     database = sqlite3.connect(bag / "bag.db3")

@@ -171,7 +171,6 @@ class Entry:
             "1": "1, percent",
             "rad": "rad, deg, mrad",
             "rad/s": "rad/s, rpm, deg/s",
-            "s": ", ".join(TIME_UNITS),
         }
         return f"one of {' or '.join(examples.get(each, each) for each in wanted)} (also with SI prefixes), or counts"
 

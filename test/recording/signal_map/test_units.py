@@ -14,6 +14,8 @@ from pierburg_ros.recording.signal_map.units import unit_of
         ("percent", 0.01, "1"),
         ("%", 0.01, "1"),
         ("deg", math.pi / 180, "rad"),
+        ("degree", math.pi / 180, "rad"),
+        ("fraction", 1.0, "1"),
         ("mrad", 1e-3, "rad"),
         ("rev", 2 * math.pi, "rad"),
         ("rpm", math.pi / 30, "rad/s"),
