@@ -78,7 +78,7 @@ def main() -> None:
     text = "\n".join(table(lines))
     print(text)
     if given.document:
-        write_section("reliability.md", "gauges", f"## Units\n\n{HEAD}\n{machine()}\n\n{text}\n")
+        write_section("gauges", f"## Units\n\n{HEAD}\n\n{machine()}\n\n{text}\n", "reliability.md")
 
 
 HEAD = """\
