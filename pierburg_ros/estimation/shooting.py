@@ -12,13 +12,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.signal import savgol_coeffs
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Inputs, Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded
+from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
 from pierburg_ros.plant.simulate import simulate_stretches
 from pierburg_ros.recording.noise import noise_of
 
@@ -90,8 +89,8 @@ class Shooting:
         value = decoded(model, self.level, quantity)
         if quantity != "speed":
             return value, self.rate * angle_per_unit(model), self.level_error * scale, self.rate_error * scale
-        turned = cumulative_trapezoid(decoded(model, measured, quantity), time, initial=0.0)[self.first]
-        return turned, value, np.full(value.size, UNKNOWN_ANGLE), self.level_error * scale
+        angle = turned(model, time, measured, quantity)[self.first]
+        return angle, value, np.full(value.size, UNKNOWN_ANGLE), self.level_error * scale
 
     def _move(self, residual: Signal, by_angle: Signal, by_velocity: Signal, noise: float) -> Signal:
         """Least-squares move of each beginning, in its errors, shape (2, stretches)."""
