@@ -209,6 +209,13 @@ class Excluded(Part):
     why: str
 
 
+class CannotAct(Part):
+    """An effect that the actuator cannot have, by its drive, load, sensor or stops."""
+
+    id: str
+    why: str
+
+
 class TorqueOverTime(Part):
     """The missing torque over the first recording."""
 
@@ -261,8 +268,8 @@ class Diagnosis(Part):
     """Version of this layout; the key is `schema`."""
     recordings: list[str]
     """Names of the recordings."""
-    quantity: Literal["hall_voltage", "position"]
-    unit: Literal["V", "rad"]
+    quantity: Literal["hall_voltage", "position", "speed"]
+    unit: str
     """Measured unit."""
     verdict: Verdict
     summary: str
@@ -282,6 +289,8 @@ class Diagnosis(Part):
     remaining: Remaining | None = None
     excluded: list[Excluded] = []
     """Spans without a known input, or that no simulation may be held against."""
+    cannot_act: list[CannotAct] = []
+    """Effects that were not tried, since an actuator of this kind cannot have them."""
     residual_torque: ResidualTorque | None = None
     """Only with the verdict "unexplained"."""
     data_quality: DataQuality
