@@ -83,6 +83,7 @@ ROOMS = {
             "recording",
             "signal_map",
             "signals",
+            "tables",
         },
     },
 }

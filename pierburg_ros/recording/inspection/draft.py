@@ -56,6 +56,8 @@ def entry(each: Guess, is_other: bool) -> str:
     parts = [f"{place}: {json.dumps(each.field.name)}"]
     if each.field.path:
         parts.append(f"field: {json.dumps(each.field.path)}")
+    if each.field.file:
+        parts.append(f"file: {json.dumps(each.field.file)}")
     if each.unit != "1":
         parts.append(f"unit: {each.unit}")
     if each.scale != 1.0:

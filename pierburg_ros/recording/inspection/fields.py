@@ -32,13 +32,14 @@ STAMP = {"sec", "nanosec"}
 class Field:
     """One number of a topic or of a table: where it stands, and values of it, shape (messages that were looked at,).
 
-    `path` is empty for a column.
+    `path` is empty for a column; `file` is the table that it stands in where there are several.
     """
 
     name: str
     type: str
     path: str
     values: Signal
+    file: str = ""
 
     @property
     def whole(self) -> bool:
