@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.signal_map.field_path import Absent, FieldPath, Named, Step, names_beside, value_at
 from pierburg_ros.recording.signals import near
 
+Parts: TypeAlias = "tuple[NDArray[np.bool_], Sequence[Any] | NDArray[np.float64]]"
+"""Which messages have a number, and those numbers."""
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
 """What reads the usual number of the types that the graph records, many messages at a time."""
 TIMES = {"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"}
@@ -52,18 +54,15 @@ def numbers(messages: Messages, path: FieldPath | None, origin: str, *, usual: b
         return Numbers(np.ones(len(messages), bool), DECODERS[messages.type](messages))
     store = types_of(messages.type, messages.definition)
     steps, is_stamp = completed(store, messages, path, origin)
-    kept, found = np.ones(len(messages), bool), []
-    for place, data in enumerate(messages.data):
-        try:
-            value = value_at(decoded(store, messages, place, data), steps)
-            found.append(nanoseconds(value) if is_stamp else single(value))
-        except Absent:
-            kept[place] = False
-        except (IndexError, Several) as error:
-            raise InputError(
-                f"{origin}: message {place} of {messages.topic} has {elements(store, messages, data, steps, error)}."
-            ) from None
-    if messages.data and not found:
+    try:
+        kept, found = joint_in(messages, steps) or values_in(store, messages, steps, is_stamp)
+    except (IndexError, Several) as error:
+        place = error.args[0]
+        raise InputError(
+            f"{origin}: message {place} of {messages.topic} has"
+            f" {elements(store, messages, messages.data[place], steps, error)}."
+        ) from None
+    if messages.data and not len(found):
         names = elements_named(store, messages, steps)
         raise InputError(
             f"{origin}: no message of {messages.topic} has {steps.written} (found: {', '.join(names[:20]) or 'none'})."
@@ -72,8 +71,35 @@ def numbers(messages: Messages, path: FieldPath | None, origin: str, *, usual: b
     return Numbers(kept, np.array(found, np.int64 if is_stamp or whole(found) else np.float64), is_stamp)
 
 
+def joint_in(messages: Messages, path: FieldPath) -> Parts | None:
+    """The same as `values_in` for one joint of joint states, ten times as fast; None for all else."""
+    if messages.type != cdr.JOINT_STATE or len(path.steps) != 2:
+        return None
+    array, element = path.steps
+    return cdr.joint(messages, array, element.name) if array in cdr.ARRAYS and isinstance(element, Named) else None
+
+
+def values_in(store: Typestore, messages: Messages, path: FieldPath, is_stamp: bool) -> Parts:
+    """Which messages have the element that is wanted, and what they have there.
+
+    IndexError or Several, with the place of the message, where an array is too short or stands for a number.
+    """
+    kept, found = np.ones(len(messages), bool), []
+    for place, data in enumerate(messages.data):
+        try:
+            value = value_at(decoded(store, messages, place, data), path)
+            found.append(nanoseconds(value) if is_stamp else single(value))
+        except Absent:
+            kept[place] = False
+        except Several as error:
+            raise Several(place, *error.args) from None
+        except IndexError:
+            raise IndexError(place) from None
+    return kept, found
+
+
 class Several(Exception):
-    """An array stands where one number is wanted."""
+    """An array of so many elements stands where one number is wanted."""
 
 
 def single(value: Any) -> float | int:
@@ -85,9 +111,9 @@ def single(value: Any) -> float | int:
     return value if type(value) is int and abs(value) < 2**62 else float(value)
 
 
-def whole(found: list[float | int]) -> bool:
+def whole(found: Sequence[Any] | NDArray[np.float64]) -> bool:
     """Whether all numbers are whole ones, which 64 bits hold to the last digit."""
-    return bool(found) and all(type(value) is int for value in found)
+    return len(found) > 0 and all(type(value) is int for value in found)
 
 
 def nanoseconds(stamp: Any) -> int:
@@ -115,7 +141,7 @@ def elements(store: Typestore, messages: Messages, data: bytes, path: FieldPath,
     if isinstance(error, Several):
         example = f"{path.written}[{names[0] if names else 0}]"
         listed = f" ({', '.join(names[:20])})" if names else ""
-        return f"{error.args[0]} elements in {path.written}{listed}, expected one. Choose it, as {example}"
+        return f"{error.args[1]} elements in {path.written}{listed}, expected one. Choose it, as {example}"
     return f"fewer elements than {path.written} asks for, expected at least so many. Choose another place or name"
 
 
