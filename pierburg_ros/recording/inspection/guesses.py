@@ -101,6 +101,7 @@ def known_as(field: Field, signal: str, rank: int, names: set[str]) -> Guess | N
     named = next((UNIT_WORDS[name] for name in sorted(names) if name in UNIT_WORDS), "")
     unit, scale, offset = in_unit(field, signal, named, max(abs(low), abs(high)))
     told = "JointState, " if field.type == JOINT_STATE else ""
+    told += "a torque or a current as its driver says, " if told and signal == "torque" else ""
     return Guess(field, signal, unit, scale, offset, f"{told}{low:.4g} to {high:.4g}", rank)
 
 
