@@ -92,6 +92,7 @@ def leaves(node: Any, path: str, around: list[Any], depth: int) -> Iterator[tupl
 def names_of(array: Any, around: list[Any]) -> list[str]:
     """The names that the elements of `array` go by, if a path can hold them; none where they have no names."""
     own = [each.name for each in array if isinstance(getattr(each, "name", None), str)]
-    found = own or next(names_beside(around[:-1]), [])
-    usable = all(name and printable(name) == name and not set(name) & set("[]") for name in found)
+    found = own or next((names for names in names_beside(around[:-1]) if len(names) == len(array)), [])
+    usable = all(name and printable(name) == name and not set(name) & set("[]'\"") for name in found)
+    usable = usable and not any(name.isdecimal() for name in found)
     return found if len(found) == len(array) == len(set(found)) and usable else []

@@ -19,7 +19,7 @@ from pierburg_ros.recording.inspection.draft import draft
 from pierburg_ros.recording.inspection.table import columns, tables_in
 from pierburg_ros.recording.read import read_recording
 from pierburg_ros.recording.recording import Recording
-from pierburg_ros.recording.signal_map import SignalMap, signal_map
+from pierburg_ros.recording.signal_map import Given, SignalMap, signal_map
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def inspect(
     *,
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
-    signals: str | Path | SignalMap | None = None,
+    signals: Given = None,
 ) -> Inspection:
     """The content of the recording at `path`; `time`, `topics` and `signals` choose as in `read_recording`."""
     chosen = signal_map(signals, topics or {})
