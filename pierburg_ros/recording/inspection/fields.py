@@ -13,10 +13,11 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError, printable
-from pierburg_ros.recording.decoding import DECODERS, DEEPEST, decoded
+from pierburg_ros.recording.decoding import DECODERS, decoded
 from pierburg_ros.recording.formats.cdr import JOINT_STATE
 from pierburg_ros.recording.formats.definitions import types_of
 from pierburg_ros.recording.formats.messages import Messages
+from pierburg_ros.recording.message_types import DEEPEST
 from pierburg_ros.recording.signal_map.field_path import names_beside
 
 MOST_LOOKED_AT = 1000
