@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -153,18 +154,24 @@ def read_actuator(source: str | Path) -> Actuator:
     with reading(source, FORM):
         text, label = _text(source)
         content = parsed(text, label, FORM).content
-        if not isinstance(content, dict):
-            raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
-        try:
-            actuator = _actuator(_Description.model_validate(content))
-        except ValidationError as error:
-            problem = _first_problem(error)
-            raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
-        try:
-            described(actuator)
-        except InputError as error:
-            raise InputError(f"{label}: {error}") from None
-        return actuator
+        actuator = actuator_of(content, label)
+    return replace(actuator, description=None) if str(source) in SHIPPED else actuator
+
+
+def actuator_of(content: object, label: str) -> Actuator:
+    """The actuator that the `content` of a description says; InputError, with the `label`, where it says none."""
+    if not isinstance(content, dict):
+        raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
+    try:
+        actuator = replace(_actuator(_Description.model_validate(content)), description=content)
+    except ValidationError as error:
+        problem = _first_problem(error)
+        raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
+    try:
+        described(actuator)
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    return actuator
 
 
 def _text(source: str | Path) -> tuple[str, str]:

@@ -72,7 +72,10 @@ class Model:
         return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.scales, self.residual_torque)
 
     def as_mapping(self) -> dict[str, Any]:
-        """The model file's content: what differs from nominal, the effects that act, the residual torque."""
+        """The model file's content: what differs from nominal, the effects that act, the residual torque.
+
+        An actuator of the user's own stands in it as described, so that the file works wherever it is taken.
+        """
         parameters = {
             name: self.values[name] for name, p in self.actuator.parameters.items() if self.values[name] != p.nominal
         }
@@ -80,7 +83,8 @@ class Model:
             effect: {name: self.values[f"{effect}.{name}"] for name in EFFECT[effect].names}
             for effect in {**self.actuator.effects, **dict.fromkeys(self.active_effects)}
         }
-        content: dict[str, Any] = {"actuator": self.actuator.name, "parameters": parameters, "effects": effects}
+        actuator = self.actuator.description or self.actuator.name
+        content: dict[str, Any] = {"actuator": actuator, "parameters": parameters, "effects": effects}
         if self.residual_torque is not None:
             content["residual_torque"] = {
                 key: np.asarray(self.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")
