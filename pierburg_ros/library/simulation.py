@@ -82,12 +82,17 @@ class Simulation(Result):
 
     @property
     def measured(self) -> Signal:
-        """Hall voltage [V] or position [rad] at each time, shape (samples,)."""
+        """Hall voltage [V], position [rad] or speed [rad/s] at each time, shape (samples,)."""
         return self.recording.measured
 
     @property
-    def duty(self) -> Signal:
-        """Duty [1] in force at each time, shape (samples,)."""
+    def unit(self) -> str:
+        """Unit of the measured quantity."""
+        return self.model.actuator.shown(self.recording.unit)
+
+    @property
+    def command(self) -> Signal:
+        """Duty [1], current [A] or torque [N.m] in force at each time, shape (samples,)."""
         return self.recording.command.at(self.recording.time, before=0.0)
 
     @property
@@ -96,29 +101,29 @@ class Simulation(Result):
         return " with ".join([self.model.actuator.name, *filter(None, [", ".join(self.model.active_effects)])])
 
     def to_json(self) -> str:
-        """Every sample as JSON: time [s], duty [1], measured [V or rad]."""
+        """Every sample as JSON: time [s], the input, and what is measured."""
         columns = {name: values.tolist() for name, values in self.columns().items()}
         about = {"schema": 1, "model": self.model.as_mapping(), "quantity": self.recording.quantity}
-        return json.dumps({**about, "unit": self.recording.unit, **columns}, allow_nan=False) + "\n"
+        return json.dumps({**about, "unit": self.unit, **columns}, allow_nan=False) + "\n"
 
     def figure(self) -> go.Figure:
-        """Measured quantity and duty over time, as a Plotly figure."""
+        """Measured quantity and input over time, as a Plotly figure."""
         from pierburg_ros.library.signal_plot import figure
 
-        return figure(self.recording, self.title)
+        return figure(self.recording, self.model.actuator, self.title)
 
     def picture(self) -> Figure:
         """The same as a Matplotlib figure."""
         from pierburg_ros.library.signal_plot import picture
 
-        return picture(self.recording, self.title)
+        return picture(self.recording, self.model.actuator, self.title)
 
     def columns(self) -> dict[str, Signal]:
-        """Time [s], duty in force [1] and measured [V or rad], each of shape (samples,)."""
-        return {"time": self.time, "duty": self.duty, self.recording.quantity: self.measured}
+        """Time [s], the input in force and what is measured, each of shape (samples,)."""
+        return {"time": self.time, self.recording.input: self.command, self.recording.quantity: self.measured}
 
     def table(self) -> pandas.DataFrame:
-        """One row a sample: time [s], duty in force [1], hall_voltage [V] or position [rad]."""
+        """One row a sample: time [s], duty [1] (or current, torque) in force, hall_voltage [V] (or position, speed)."""
         return data_frame(self.columns())
 
     def rows(self) -> dict[str, str]:
@@ -126,7 +131,7 @@ class Simulation(Result):
         low, high = float(self.measured.min()), float(self.measured.max())
         return {
             "simulated": f"{self.recording.duration:.2f} s, {self.time.size} samples",
-            self.recording.quantity.replace("_", " "): f"{low:.4g} to {high:.4g} {self.recording.unit}",
+            self.recording.quantity.replace("_", " "): f"{low:.4g} to {high:.4g} {self.unit}",
         }
 
     def write_into(self, folder: Path) -> None:

@@ -55,6 +55,8 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
         recordings=list({run.number: run.name for run in data.runs}.values()),
         quantity=actuator.quantity,
         unit=actuator.unit,
+        input=actuator.input,
+        motion=actuator.motion,
         verdict=conclusion.verdict,
         summary=words.cautioned(limits, words.warned(data, conclusion.verdict, text)),
         effects=named,
@@ -74,13 +76,13 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
 
 def effects(conclusion: Conclusion) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    final = conclusion.final
+    final, unit = conclusion.final, conclusion.final.model.actuator.shown
     found = []
     for variant in final.explanation.variants:
         declared = EFFECT[variant.effect]
         values = {name: final.model.values[f"{variant.effect}.{name}"] for name in declared.names}
         parameters = {
-            name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], declared.parameter(name).unit)
+            name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], unit(declared.parameter(name).unit))
             for name in declared.names
             if name in variant.free or values[name] != 0.0
         }
@@ -124,7 +126,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=found.nominal.values[name],
             value=final.model.values[name],
-            unit=actuator.parameters[name].unit,
+            unit=actuator.shown(actuator.parameters[name].unit),
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
@@ -244,12 +246,12 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
 
 
 def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
-    """Time [s], measured, duty, and what the three models make of a run, each (samples,)."""
+    """Time [s], measured, command, and what the three models make of a run, each (samples,)."""
     place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
     return {
         "time": run.time,
         "measured": run.measured,
-        "duty": run.inputs.command[place],
+        "command": run.inputs.command[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
         "final": run.simulated(conclusion.model, conclusion.final.switch),
