@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.actuators import SHIPPED, Actuator, actuator_of, read_actuator
+from pierburg_ros.actuators.values import check
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import check_magnitude, read_yaml, reading
@@ -126,6 +127,6 @@ def _try(model: Model, change: dict[str, Any], place: str, base_only: bool = Fal
     try:
         if base_only and "." in str(name):
             raise InputError(f"{name} belongs under effects.")
-        model._check(name, change[name])
+        check(model.actuator, name, change[name])
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
