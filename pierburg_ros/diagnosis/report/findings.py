@@ -77,7 +77,7 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequen
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
-        ruled_out=[ruled_out(limit) for limit in limits],
+        ruled_out=[ruled_out(limit, actuator) for limit in limits],
         remaining=remaining(data, conclusion, parts),
         excluded=excluded(data),
         cannot_act=cannot_act(actuator),
@@ -229,9 +229,9 @@ def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
     ]
 
 
-def ruled_out(limit: Limit) -> RuledOut:
+def ruled_out(limit: Limit, actuator: Actuator) -> RuledOut:
     """A strength that is excluded, with its unit."""
-    unit = EFFECT[limit.effect].parameter(limit.parameter).unit
+    unit = actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
     side = {"above" if limit.above else "below": limit.value}
     return RuledOut(id=limit.effect, parameter=limit.parameter, unit=unit, **side)
 
