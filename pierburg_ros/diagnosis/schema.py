@@ -271,6 +271,10 @@ class Diagnosis(Part):
     quantity: Literal["hall_voltage", "position", "speed"]
     unit: str
     """Measured unit."""
+    input: Literal["duty", "current", "torque"] = "duty"
+    """What drives the actuator."""
+    motion: Literal["rotary", "linear"] = "rotary"
+    """Of a linear actuator every rad is a metre, and every N.m a newton."""
     verdict: Verdict
     summary: str
     """One paragraph that a technician can read."""
