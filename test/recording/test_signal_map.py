@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosbags.rosbag2 import CompressionMode, StoragePlugin, Writer
-from support.foreign_bags import STORE, T, bench_run, header, joints, write_foreign
+from support.foreign_bags import STORE, T, bench_run, header, joints, stamp, write_foreign
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
@@ -232,6 +232,34 @@ def test_what_a_map_asks_for_and_a_bag_has_not(tmp_path, written, entry, said):
     bag = write_foreign(tmp_path / "bag", bench_run(5))
     text = f'duty: {entry}\nposition: {{topic: /joint_states, field: "position[elbow]"}}\n'
     assert said in refusal(bag, written(text))
+
+
+def test_the_time_may_be_a_clock(tmp_path, written):
+    messages = []
+    for k in range(40):
+        log, simulated = 1000 + 0.02 * k, stamp(5.0 + 0.01 * k)
+        messages.append(("/sim/time", "rosgraph_msgs/msg/Clock", log, T["rosgraph_msgs/msg/Clock"](simulated)))
+        messages += [(topic, FLOAT64, log + 0.001, T[FLOAT64](0.1)) for topic in ("/duty", "/hall_voltage")]
+    bag = write_foreign(tmp_path / "bag", messages)
+    recording = read_recording(bag, signals=written("time: {topic: /sim/time, field: clock}\n"))
+    assert recording.time_source == "clock"
+    np.testing.assert_allclose(recording.time, 0.01 * np.arange(40), atol=1e-9)
+
+
+def test_joints_of_others_do_not_matter_beside_what_a_person_chose(tmp_path, written):
+    messages = []
+    for k in range(20):
+        time = 1000 + 0.01 * k
+        for arm in ("/left/joint_states", "/right/joint_states"):
+            messages.append((arm, "sensor_msgs/msg/JointState", time, joints(time, elbow=1.0)))
+        messages += [(topic, FLOAT64, time, T[FLOAT64](0.1)) for topic in ("/bench/pwm", "/bench/angle")]
+    bag = write_foreign(tmp_path / "bag", messages)
+    recording = read_recording(bag, signals=written("duty: {topic: /bench/pwm}\nposition: {topic: /bench/angle}\n"))
+    assert recording.time.size == 20 and recording.time_source == "publish"
+    hall = "duty: {topic: /bench/pwm}\nhall_voltage: {topic: /bench/angle}\n"
+    assert read_recording(bag, signals=written(hall)).time.size == 20
+    with pytest.raises(InputError, match="has 2 topics for joint_states"):
+        read_recording(bag)
 
 
 def test_stamps_that_no_signal_shares_are_refused(tmp_path, written):
