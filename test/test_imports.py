@@ -44,9 +44,10 @@ ROOMS = {
         "search": {"evidence"},
         "location": {"schema", "evidence"},
         "remainder": {"evidence", "search"},
+        "limits": {"search"},
         "verdict": {"schema", "search", "remainder"},
         "result": {"schema"},
-        "report": {"schema", "evidence", "search", "location", "remainder", "verdict", "result"},
+        "report": {"schema", "evidence", "search", "location", "remainder", "limits", "verdict", "result"},
     },
     "identification": {
         "fit": set(),
