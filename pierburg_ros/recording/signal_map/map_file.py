@@ -20,8 +20,8 @@ KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
 TIME_KEYS = ("topic", "field", "column", "unit")
 TIME_UNITS = ("s", "ms", "us", "ns")
 FORM = "expected {topic: /name, field: path} or {column: name}, with unit, scale, offset and sign where needed"
-BARE_PATH = re.compile(r"(\bfield:[ \t]+)([A-Za-z][\w.]*(?:\[[^\[\]'\"\n]*\][\w.]*)+)(?=[ \t]*[,}])")
-"""A path with brackets and without quotes between braces, where YAML would begin a list: it is read as it is meant."""
+BARE = re.compile(r"(?P<key>\b(?:field|column|topic):[ \t]+)(?P<name>[^\s'\"\[{,}][^'\"{},\n]{0,300})(?=[,}])")
+"""A name or a path between braces and without quotes."""
 LARGEST = 1e12
 """Largest magnitude of a scale, and with 1 over it the smallest: from pico to tera."""
 MOST_FILES = 1000
@@ -55,7 +55,7 @@ def read_signal_map(given: str | Path | Mapping[str, Any]) -> SignalMap:
     if isinstance(given, Mapping):
         name, document = "signals", Document(dict(given), None)
     else:
-        name, text = str(given), BARE_PATH.sub(r'\1"\2"', text_of(given, "a signal map"))
+        name, text = str(given), BARE.sub(quoted, text_of(given, "a signal map"))
         document = parsed(text, name, "a signal map")
     content = document.content
     if not isinstance(content, dict) or not content:
@@ -73,6 +73,12 @@ def read_signal_map(given: str | Path | Mapping[str, Any]) -> SignalMap:
         else:
             sources[signal] = entry.source()
     return SignalMap(sources, time, frozenset(left_out))
+
+
+def quoted(bare: re.Match[str]) -> str:
+    """The same with quotes where it holds a bracket: YAML would begin a list there, and a person means the name."""
+    name = bare["name"].rstrip()
+    return f'{bare["key"]}"{name}"' if "[" in name and "\\" not in name else bare[0]
 
 
 class Entry:
