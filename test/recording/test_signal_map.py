@@ -4,10 +4,10 @@ import sqlite3
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosbags.rosbag2 import CompressionMode, StoragePlugin, Writer
-from support.foreign_bags import STORE, T, bench_run, header, joints, stamp, write_foreign
+from support.foreign_bags import STORE, T, bench_run, board, header, joints, stamp, write_foreign
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
@@ -158,6 +158,47 @@ def test_a_map_undoes_what_was_done_to_the_numbers(tmp_path_factory, scale, offs
     np.testing.assert_allclose(recording.measured, values, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(recording.time, 0.01 * np.arange(25), atol=1e-12)
     np.testing.assert_allclose(recording.command.values, 0.005 * np.arange(25), atol=1e-15)
+
+
+@given(
+    scale=st.floats(1e-3, 1e3),
+    offset=st.floats(-10.0, 10.0),
+    sign=st.sampled_from((1, -1)),
+    unit=st.sampled_from((("rad", 1.0), ("deg", np.pi / 180), ("mrad", 1e-3), ("rev", 2 * np.pi))),
+)
+@settings(max_examples=20)
+def test_a_map_of_a_bag_gives_the_plain_recording(tmp_path_factory, scale, offset, sign, unit):
+    folder = tmp_path_factory.mktemp("property")
+    plain, raw = [], []
+    for k in range(25):
+        time, angle = 1000.0 + 0.01 * k, 0.06 * k
+        number = (angle - offset) / (sign * unit[1] * scale)
+        duty = ("/duty", FLOAT64, time, T[FLOAT64](0.01 * k))
+        plain += [("/position", FLOAT64, time, T[FLOAT64](angle)), duty]
+        raw += [("/encoder", "bench/msg/Board", time, board(number, 0)), duty]
+    first = read_recording(write_foreign(folder / "plain", plain))
+    entry = {"topic": "/encoder", "field": "channels[supply].volts", "unit": unit[0]}
+    signals = {"position": {**entry, "scale": scale, "offset": offset, "sign": sign}}
+    second = read_recording(write_foreign(folder / "raw", raw), signals=signals)
+    np.testing.assert_allclose(second.measured, first.measured, rtol=1e-12, atol=1e-12)
+    np.testing.assert_array_equal(second.time, first.time)
+    np.testing.assert_array_equal(second.command.values, first.command.values)
+
+
+def test_what_a_map_does_not_name_changes_nothing(tmp_path, written):
+    text = "std_msgs/msg/String"
+    logs = [
+        (topic, text, 1000.0 + 0.05 * k, T[text]("armature_resistance 4.7"))
+        for k in range(12)
+        for topic in ("/rosout", "/parameter_events", "/diagnostics")
+    ]
+    few = write_foreign(tmp_path / "few", bench_run())
+    many = write_foreign(tmp_path / "many", sorted(bench_run() + logs, key=lambda message: message[2]))
+    plain, noisy = (read_recording(bag, signals=written(MAP)) for bag in (few, many))
+    np.testing.assert_array_equal(plain.measured, noisy.measured)
+    np.testing.assert_array_equal(plain.command.values, noisy.command.values)
+    np.testing.assert_array_equal(plain.time, noisy.time)
+    assert plain.losses == noisy.losses
 
 
 @pytest.mark.parametrize(
