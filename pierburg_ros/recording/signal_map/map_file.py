@@ -95,9 +95,10 @@ class Entry:
         """Where the signal comes from."""
         self.check_keys(KEYS)
         kind = self.kind()
-        unit, scale = self.unit(SIGNALS[self.signal].units), self.number("scale", 1.0, LARGEST)
+        wanted = SIGNALS[self.signal].units
+        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST)
         if unit.written == COUNTS and "scale" not in self.given:
-            raise self.wrong("unit", COUNTS, f"a scale too, in {SIGNALS[self.signal].units[0]} per count")
+            raise self.wrong("unit", COUNTS, f"a scale too, in {wanted[0]} per count")
         if scale == 0.0 or abs(scale) < 1.0 / LARGEST:
             raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST:g}")
         return Source(
@@ -110,6 +111,7 @@ class Entry:
             self.sign(),
             self.files(),
             self.origin,
+            "" if unit.written in (COUNTS, "1") else next(each for each in wanted if unit.measures(each)),
         )
 
     def time(self) -> TimeSource:
