@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
@@ -31,14 +32,21 @@ class Remainder:
     shape: Shape | None
 
 
-def remainder(found: Found, progress: Progress = lambda _: None, jobs: int | None = None) -> Remainder:
+def unexamined(found: Found) -> Remainder:
+    """What stands where there is no time to look at what remains: the recalibrated model, and no effect."""
+    return Remainder(found.estimator.restated(found.recalibrated), {}, {}, None)
+
+
+def remainder(
+    found: Found, progress: Progress = lambda _: None, jobs: int | None = None, deadline: Deadline | None = None
+) -> Remainder:
     """Physics beyond one explanation, and the shape of what is left.
 
     Several recordings can vouch for effects that each lower the error on recordings left out; one recording
     cannot. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
-    with workers(jobs) as pool:
+    with workers(jobs, deadline) as pool:
         if data.several:
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)

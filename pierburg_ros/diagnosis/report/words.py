@@ -126,6 +126,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     return f"{warning} {text}"
 
 
+def provisional(text: str, stopped: bool) -> str:
+    """The summary, marked where the search had to end before it was done."""
+    return f"Stopped before all was tried; this is the best verdict yet. {text}" if stopped else text
+
+
 def cautioned(limits: Sequence[Limit], text: str) -> str:
     """The summary, or, where the recordings cannot decide anything, why not."""
     decisive = [limit.finding for limit in limits if limit.decisive]
