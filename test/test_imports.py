@@ -72,7 +72,8 @@ ROOMS = {
         "formats": {"columns", "loss"},
         "signals": {"formats"},
         "signal_map": {"signals"},
-        "decoding": {"formats", "signal_map", "signals"},
+        "message_types": {"formats", "signal_map", "signals"},
+        "decoding": {"formats", "message_types", "signal_map", "signals"},
         "topics": {"decoding", "formats", "signal_map", "signals"},
         "read": {"clocks", "columns", "formats", "loss", "recording", "signal_map", "signals", "tables", "topics"},
         "inspection": {
@@ -81,10 +82,12 @@ ROOMS = {
             "decoding",
             "formats",
             "loss",
+            "message_types",
             "read",
             "recording",
             "signal_map",
             "signals",
+            "tables",
         },
     },
 }
