@@ -278,6 +278,8 @@ class Diagnosis(Part):
     verdict: Verdict
     summary: str
     """One paragraph that a technician can read."""
+    stopped: bool = False
+    """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
     effects: list[Effect] = []
     parameters: dict[str, BaseParameter] = {}
     changes: list[Change] = []
