@@ -17,7 +17,7 @@ ALLOWED = {
     "processes": {"errors"},
     "workers": {"errors"},
     "intake": {"errors"},
-    "effects": {"errors", "kernel", "parameter"},
+    "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
     "plant": {"errors", "kernel", "intake", "parameter", "workers", "effects", "actuators", "arrays"},
     "control": {"errors", "kernel", "intake", "parameter"},

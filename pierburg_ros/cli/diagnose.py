@@ -36,7 +36,7 @@ def diagnose(
     Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
     """
     nominal = chosen_or_valve(model, actuator)
-    measured = [read(path, time=time, topics=topics_of(topic)) for path in recordings]
+    measured = [read(path, time=time, topics=topics_of(topic), actuator=nominal.actuator) for path in recordings]
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs)
         diagnosis.write_into(folder)

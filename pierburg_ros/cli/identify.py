@@ -57,7 +57,7 @@ def identify(
             " run.mcap --output DIR."
         )
     start = chosen_or_valve(model, actuator)
-    measured = [read(path, time=time, topics=topics_of(topic)) for path in recordings]
+    measured = [read(path, time=time, topics=topics_of(topic), actuator=start.actuator) for path in recordings]
     with output_folder(output) as folder:
         with terminal(stderr=True).status("fitting whole recordings"):
             identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)

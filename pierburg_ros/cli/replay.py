@@ -29,7 +29,7 @@ def replay(
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
     """
     chosen = chosen_model(model, actuator)
-    measured = read(recording, time=time, topics=topics_of(topic))
+    measured = read(recording, time=time, topics=topics_of(topic), actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
     console = terminal()

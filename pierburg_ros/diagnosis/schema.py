@@ -217,8 +217,8 @@ class Diagnosis(Part):
     """Version of this layout; the key is `schema`."""
     recordings: list[str]
     """Names of the recordings."""
-    quantity: Literal["hall_voltage", "position"]
-    unit: Literal["V", "rad"]
+    quantity: Literal["hall_voltage", "position", "speed"]
+    unit: str
     """Measured unit."""
     verdict: Verdict
     summary: str

@@ -132,17 +132,19 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
 
 
 def inputs_of(recording: Recording) -> Inputs:
-    """What drove the actuator in `recording`: duty, and supply voltage and bridge state where recorded.
+    """What drove the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
 
-    Each channel holds its value until its next one. Before its first value duty is 0, the bridge enabled, the
+    Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
     supply voltage the first one recorded.
     """
-    channels = [recording.duty, recording.supply_voltage, recording.enabled]
+    channels = [recording.command, recording.supply_voltage, recording.enabled]
     times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
-    duty = np.clip(recording.duty.at(times, before=0.0), -1.0, 1.0)
+    command = recording.command.at(times, before=0.0)
+    if recording.input == "duty":
+        command = np.clip(command, -1.0, 1.0)
     supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
     enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
-    return Inputs(times, duty, supply, enabled)
+    return Inputs(times, command, supply, enabled)
 
 
 def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> Inputs:

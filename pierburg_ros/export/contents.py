@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.effects import DECLARED, EFFECT, Effect
 from pierburg_ros.effects.effect import Place, Quantity
 from pierburg_ros.plant import Model
+
+IDENTITY = {"torque_scale": 1.0, "sensor_scale": 1.0}
+"""Values at which a base parameter changes nothing, where that is not 0."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,11 @@ class Exported:
     notes: tuple[str, ...]
 
 
+def declared(effect: str, parameter: str) -> str:
+    """Unit of an effect's parameter, as it is declared."""
+    return DECLARED[f"{effect}.{parameter}"].unit
+
+
 @dataclass
 class Contents:
     """A model that a format reads number by number.
@@ -47,16 +55,14 @@ class Contents:
     _read: set[str] = field(default_factory=set)
 
     def base(self, name: str) -> float:
-        """A base parameter, in its unit; 0 where the actuator has none."""
+        """A base parameter, in its unit; where the actuator has none, the value at which it changes nothing."""
         self._read.add(name)
-        return self.model.values.get(name, 0.0)
+        return self.model.values.get(name, IDENTITY.get(name, 0.0))
 
     def quantity(self, name: Quantity) -> float:
         """What effects that act give for a quantity that other simulators know, in SI units; 0 where none does."""
         for effect in self._acting():
             parameter = effect.elsewhere.quantities.get(name)
-            if isinstance(parameter, float):
-                return parameter
             if parameter is not None:
                 self._read.add(f"{effect.id}.{parameter}")
                 return self.model.values[f"{effect.id}.{parameter}"]
@@ -85,13 +91,14 @@ class Contents:
     def left_out(self) -> tuple[LeftOut, ...]:
         """What has not been read, in the order of the signal path; zeros are nothing to hold."""
         values = self.model.values
+        motion = self.model.actuator.motion
         base = [
-            LeftOut(None, name, values[name], UNITS[name][0])
-            for name in self.model.actuator.parameters
-            if name not in self._read and values[name] != 0.0
+            LeftOut(None, name, values[name], parameter.unit)
+            for name, parameter in self.model.actuator.parameters.items()
+            if name not in self._read and values[name] != IDENTITY.get(name, 0.0)
         ]
         effects = [
-            LeftOut(effect.id, name, values[f"{effect.id}.{name}"], DECLARED[f"{effect.id}.{name}"].unit)
+            LeftOut(effect.id, name, values[f"{effect.id}.{name}"], unit_of(declared(effect.id, name), motion))
             for effect in self._acting()
             for name in effect.names
             if f"{effect.id}.{name}" not in self._read and values[f"{effect.id}.{name}"] != 0.0

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.effects import DECLARED, Effect
 from pierburg_ros.effects.effect import Place
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import stall_torque
+from pierburg_ros.export.motor import INPUTS, typical_torque
 from pierburg_ros.export.remarks import remarks
 
 GIVE = 1e-4
@@ -33,37 +33,36 @@ def modelica(contents: Contents) -> str:
     name = name if name[0].isalpha() else f"m_{name}"
     parameters, body = list(declared(contents, acting)), list(equations(contents, acting))
     variables = list(variables_of(acting))
-    output = f'output Real {contents.model.actuator.quantity} "as the sensor gives it [{contents.model.actuator.unit}]"'
-    about = remarks(contents, ("The input is the duty, from -1 to 1.",))
+    about = remarks(contents, (f"The input is the {INPUTS[contents.model.actuator.drive]}.",))
     lines = [f"// {line}" for line in about]
     lines += [f'model {name} "{plain(contents.model.actuator.title)}"']
-    lines += [f"  {line};" for line in (*parameters, *VARIABLES, current(acting), output, *variables)]
+    lines += [f"  {line};" for line in (*parameters, *VARIABLES, *signals(contents, acting), *variables)]
     lines += ["equation", *(f"  {line};" for line in body), f"end {name};"]
     return "\n".join(lines) + "\n"
 
 
 VARIABLES = (
     "constant Real pi = 3.141592653589793",
-    'input Real duty "of the armature voltage, -1 to 1"',
     'Real angle(start = start_angle, fixed = true, unit = "rad")',
     'Real velocity(start = 0, fixed = true, unit = "rad/s")',
     'Real bristle(start = start_bristle, fixed = true, unit = "rad") "deflection of the friction contact"',
-    "Real effective_duty, voltage, resistance, motor_torque",
-    "Real friction_level, bristle_rate, friction, load, stop",
+    "Real command, motor_torque, friction_level, bristle_rate, friction, load, stop",
 )
 
 
 def declared(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, str]]]) -> Iterator[str]:
     """Every parameter with unit and meaning; those of effects as effect_parameter."""
     yield 'parameter Real start_angle = 0 "angle at the start [rad]"'
-    for name in contents.model.actuator.parameters:
-        unit, meaning = UNITS[name]
-        yield f'parameter Real {name} = {contents.base(name)!r} "{meaning} [{unit}]"'
+    actuator = contents.model.actuator
+    for name, base in actuator.parameters.items():
+        yield f'parameter Real {name} = {contents.base(name)!r} "{plain(base.meaning)} [{base.unit}]"'
+    yield f'parameter Real sensor_span = {actuator.sensor_span!r} "over which the sensor is straight"'
     for effect, _ in acting:
         for parameter in effect.names:
             about = DECLARED[f"{effect.id}.{parameter}"]
             value = contents.model.values[f"{effect.id}.{parameter}"]
-            yield f'parameter Real {effect.id}_{parameter} = {value!r} "{plain(about.meaning)} [{about.unit}]"'
+            unit = unit_of(about.unit, actuator.motion)
+            yield f'parameter Real {effect.id}_{parameter} = {value!r} "{plain(about.meaning)} [{unit}]"'
     yield from rigid(contents, acting)
 
 
@@ -71,30 +70,35 @@ def rigid(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, str]
     """Stiffnesses of what the model has rigid, and how the bristles of friction that is not rigid lean at the start."""
     places = {place for _, terms in acting for place in terms}
     actuator = contents.model.actuator
-    stopped = math.isfinite(actuator.lower_stop) and math.isfinite(actuator.upper_stop)
-    give = GIVE * (actuator.upper_stop - actuator.lower_stop if stopped else UNSTOPPED)
+    travel = actuator.upper_stop - actuator.lower_stop
+    give = GIVE * (travel if math.isfinite(travel) else UNSTOPPED)
     leaning = 0.0
-    if "bristle_stiffness" in places and has_stops(contents):
+    if "bristle_stiffness" in places and contents.model.actuator.has_stops:
         leaning = -contents.base("coulomb_friction") / contents.quantity("bristle_stiffness")
     yield f'parameter Real start_bristle = {leaning!r} "as closing onto the stop has left it [rad]"'
     if "bristle_stiffness" not in places:
-        stiffness = max(contents.base("coulomb_friction"), GIVE * stall_torque(contents)) / give
+        stiffness = max(contents.base("coulomb_friction"), GIVE * typical_torque(contents)) / give
         damping = 2.0 * math.sqrt(stiffness * contents.base("total_inertia"))
         yield f'parameter Real bristle_stiffness = {stiffness:.6g} "of friction, rigid in the model [N.m/rad]"'
         yield f'parameter Real bristle_damping = {damping:.6g} "of friction before it slides [N.m.s/rad]"'
         contents.notes.append(f"Friction is rigid in the model; here it gives {give:.2g} rad before it slides.")
-    if "stop_stiffness" not in places and has_stops(contents):
-        pressed = (stall_torque(contents) + contents.base("spring_preload")) / give
+    if "stop_stiffness" not in places and contents.model.actuator.has_stops:
+        pressed = (typical_torque(contents) + contents.base("spring_preload")) / give
         damping = 2.0 * math.sqrt(pressed * contents.base("total_inertia"))
         yield f'parameter Real stop_stiffness = {pressed:.6g} "of the stops, rigid in the model [N.m/rad]"'
         yield f'parameter Real stop_damping = {damping:.6g} "of the stops [N.m.s/rad]"'
         contents.notes.append(f"Stops are rigid in the model; here they give {give:.2g} rad under the stall torque.")
 
 
-def current(acting: Sequence[tuple[Effect, Mapping[Place, str]]]) -> str:
-    """The motor current, a state where the winding is inductive."""
-    inductive = any("inductance" in terms for _, terms in acting)
-    return f'Real current{"(start = 0, fixed = true)" if inductive else ""} "of the motor [A]"'
+def signals(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, str]]]) -> Iterator[str]:
+    """Input, output, and the motor current, which is a state where the winding is inductive."""
+    actuator = contents.model.actuator
+    yield f'input Real {actuator.input} "{INPUTS[actuator.drive]}"'
+    yield f'output Real {actuator.quantity} "as the sensor gives it [{actuator.unit}]"'
+    if actuator.drive == "voltage":
+        inductive = any("inductance" in terms for _, terms in acting)
+        yield "Real voltage, resistance"
+        yield f'Real current{"(start = 0, fixed = true)" if inductive else ""} "of the motor [A]"'
 
 
 def variables_of(acting: Sequence[tuple[Effect, Mapping[Place, str]]]) -> Iterator[str]:
@@ -110,15 +114,9 @@ def equations(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, 
     def added(place: Place) -> str:
         return "".join(f" + {filled(effect, terms[place])}" for effect, terms in acting if place in terms)
 
-    inductance = added("inductance").removeprefix(" + ")
     further: list[str] = []
-    yield f"effective_duty = {changed(acting, 'duty', 'duty', further)}"
-    yield "voltage = effective_duty*supply_voltage"
-    yield f"resistance = armature_resistance{added('resistance')}"
-    driving = "voltage - gear_ratio*torque_constant*velocity"
-    lagging = f"der(current) = ({driving} - resistance*current)/{inductance}"
-    yield lagging if inductance else f"current = ({driving})/resistance"
-    yield "motor_torque = gear_ratio*torque_constant*current"
+    yield f"command = {changed(acting, 'command', contents.model.actuator.input, further)}"
+    yield from drive(contents, added)
     yield f"friction_level = max(coulomb_friction{added('friction_level')}, {RESIDUAL_FRICTION:g})"
     stiffness = added("bristle_stiffness").removeprefix(" + ") or "bristle_stiffness"
     yield f"bristle_rate = velocity - abs(velocity)*bristle*{stiffness}/friction_level"
@@ -131,10 +129,27 @@ def equations(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, 
     yield f"stop = {stop(contents, added)}"
     yield "der(angle) = velocity"
     yield "der(velocity) = (motor_torque - load - friction - stop)/total_inertia"
-    sensed = changed(acting, "sensed", "angle", further)
+    speed = contents.model.actuator.quantity == "speed"
+    sensed = changed(acting, "sensed", "velocity" if speed else "angle", further)
     yield f"{contents.model.actuator.quantity} = {changed(acting, 'measured', sensor(contents, sensed), further)}"
     yield from further
     yield from (filled(e, t["equation"]) for e, t in acting if "equation" in t and "{input}" not in t["equation"])
+
+
+def drive(contents: Contents, added: Callable[[Place], str]) -> Iterator[str]:
+    """From the command to the torque of the motor."""
+    kind = contents.model.actuator.drive
+    if kind != "voltage":
+        scale = "torque_scale*" if "torque_scale" in contents.model.actuator.parameters else ""
+        yield f"motor_torque = {scale if kind == 'torque' else 'gear_ratio*torque_constant*'}command"
+        return
+    inductance = added("inductance").removeprefix(" + ")
+    driving = "voltage - gear_ratio*torque_constant*velocity"
+    yield "voltage = command*supply_voltage"
+    yield f"resistance = armature_resistance{added('resistance')}"
+    lagging = f"der(current) = ({driving} - resistance*current)/{inductance}"
+    yield lagging if inductance else f"current = ({driving})/resistance"
+    yield "motor_torque = gear_ratio*torque_constant*current"
 
 
 def changed(acting: Sequence[tuple[Effect, Mapping[Place, str]]], place: Place, signal: str, further: list[str]) -> str:
@@ -163,17 +178,10 @@ def at_rest(contents: Contents) -> str:
     return " + ".join(term for name, term in terms.items() if name in names) or "0"
 
 
-def has_stops(contents: Contents) -> bool:
-    """Whether anything ends the travel."""
-    actuator = contents.model.actuator
-    return math.isfinite(actuator.lower_stop) or math.isfinite(actuator.upper_stop)
-
-
-def stop(contents: Contents, added: object) -> str:
+def stop(contents: Contents, added: Callable[[Place], str]) -> str:
     """Torque of the stops, positive closes: one-sided springs with dampers."""
-    if not has_stops(contents):
+    if not contents.model.actuator.has_stops:
         return "0"
-    assert callable(added)
     stiffness = added("stop_stiffness").removeprefix(" + ") or "stop_stiffness"
     damping = added("stop_damping").removeprefix(" + ") or "stop_damping"
     lower, upper = contents.model.actuator.lower_stop, contents.model.actuator.upper_stop
@@ -189,9 +197,11 @@ def stop(contents: Contents, added: object) -> str:
 
 def sensor(contents: Contents, sensed: str) -> str:
     """What the sensor gives of the angle it senses."""
-    if contents.model.actuator.quantity == "position":
-        return sensed
-    return f"hall_voltage_closed + (hall_voltage_open - hall_voltage_closed)*({sensed})/(pi/2)"
+    if contents.model.actuator.quantity == "hall_voltage":
+        return f"hall_voltage_closed + (hall_voltage_open - hall_voltage_closed)*({sensed})/sensor_span"
+    parameters = contents.model.actuator.parameters
+    scaled = f"sensor_scale*({sensed})" if "sensor_scale" in parameters else sensed
+    return f"{scaled} + sensor_offset" if "sensor_offset" in parameters else scaled
 
 
 def plain(text: str) -> str:

@@ -10,8 +10,9 @@ import math
 
 import numpy as np
 
+from pierburg_ros.effects import COPPER
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import braking
+from pierburg_ros.export.motor import ENDLESS, INPUTS, braking, motor_constant, torque_per_input
 from pierburg_ros.export.remarks import remarks
 from pierburg_ros.export.shaft import GRAVITY, shaft
 from pierburg_ros.export.xml import Element, child, document, numbers
@@ -33,24 +34,29 @@ def mujoco(contents: Contents) -> str:
     step = timestep(contents)
     root = Element("mujoco", {"model": contents.model.actuator.name})
     child(root, "compiler", angle="radian", autolimits="true")
-    gravity = numbers(0, 0, -GRAVITY) if contents.model.actuator.load == "pendulum" else "0 0 0"
+    gravity = numbers(0, 0, -GRAVITY) if contents.base("gravity_torque") else "0 0 0"
     child(root, "option", timestep=step, integrator="discrete", gravity=gravity)
     body = child(child(root, "worldbody"), "body", name="shaft")
     joint(contents, body, step)
     moving = shaft(contents)
     place, own = numbers(0, 0, -moving.lever), numbers(moving.inertia, moving.inertia, moving.inertia)
     child(body, "inertial", pos=place, mass=moving.mass, diaginertia=own)
-    motor(contents, child(root, "actuator"), step)
+    drive(contents, child(root, "actuator"), step)
     sensors = child(root, "sensor")
     child(sensors, "jointpos", name="angle", joint="shaft")
     child(sensors, "jointvel", name="velocity", joint="shaft")
-    hall_voltage(contents, root)
-    supply = contents.base("supply_voltage")
-    driven = (
-        f"ctrl is the armature voltage in V: duty x supply voltage, here duty x {supply:g}; no open bridge.",
-        "The integrator `discrete` came with MuJoCo 3.13; before it, take `implicitfast` with a tenth of the step.",
-    )
-    return document(root, remarks(contents, driven))
+    characteristic(contents, root)
+    return document(root, remarks(contents, driven(contents)))
+
+
+def driven(contents: Contents) -> tuple[str, ...]:
+    """What `ctrl` is, and what the integrator needs."""
+    needs = "The integrator `discrete` came with MuJoCo 3.13; before it, take `implicitfast` with a tenth of the step."
+    if contents.model.actuator.drive == "voltage":
+        supply = contents.base("supply_voltage")
+        volts = f"duty x supply voltage, here duty x {supply:g}"
+        return (f"ctrl is the armature voltage in V: {volts}; no open bridge.", needs)
+    return (f"ctrl is the {INPUTS[contents.model.actuator.drive]}.", needs)
 
 
 def timestep(contents: Contents) -> float:
@@ -60,8 +66,7 @@ def timestep(contents: Contents) -> float:
     if stiffness > 0.0:
         steps.append(total_damping(contents) / (RESOLVED * stiffness))
     if inductance > 0.0:
-        constant = contents.base("gear_ratio") * contents.base("torque_constant")
-        steps.append(math.sqrt(inductance * contents.base("total_inertia")) / constant / RESOLVED)
+        steps.append(math.sqrt(inductance * contents.base("total_inertia")) / motor_constant(contents) / RESOLVED)
     return float(f"{min(steps):.1g}")
 
 
@@ -74,10 +79,11 @@ def total_damping(contents: Contents) -> float:
 def joint(contents: Contents, body: Element, step: float) -> None:
     """The hinge: spring, stops, viscous friction, and dry friction that is not LuGre."""
     actuator = contents.model.actuator
-    hinge = child(body, "joint", name="shaft", type="hinge", axis=shaft(contents).axis)
+    kind = "hinge" if actuator.motion == "rotary" else "slide"
+    hinge = child(body, "joint", name="shaft", type=kind, axis=shaft(contents).axis)
     hinge.attrib.update(spring(contents))
-    if math.isfinite(actuator.lower_stop) or math.isfinite(actuator.upper_stop):
-        hinge.set("range", numbers(max(actuator.lower_stop, -1e6), min(actuator.upper_stop, 1e6)))
+    if actuator.has_stops:
+        hinge.set("range", numbers(max(actuator.lower_stop, -ENDLESS), min(actuator.upper_stop, ENDLESS)))
         hinge.attrib.update(stops(contents, step))
     damping = contents.quantity("viscous_damping")
     if damping > 0.0:
@@ -118,32 +124,38 @@ def stops(contents: Contents, step: float) -> dict[str, str]:
     return {"solreflimit": reference, "solimplimit": numbers(SOFT, SOFT, 0.001)}
 
 
-def motor(contents: Contents, actuators: Element, step: float) -> None:
-    """The motor behind its gear."""
-    gear, constant = contents.base("gear_ratio"), contents.base("torque_constant")
-    supply = contents.base("supply_voltage")
-    element = child(
-        actuators,
-        "dcmotor",
-        name="motor",
-        joint="shaft",
-        gear=gear,
-        motorconst=numbers(constant, constant),
-        resistance=contents.base("armature_resistance"),
-        ctrlrange=numbers(-supply, supply),
-    )
-    if inductance := contents.quantity("winding_inductance"):
-        element.set("inductance", numbers(inductance, 0))
-    if heat := contents.quantity("winding_heat_resistance"):
-        coefficient = contents.quantity("winding_temperature_coefficient")
-        element.set("thermal", numbers(heat, contents.quantity("winding_heat_capacity"), 0, coefficient, 20, 20))
+def drive(contents: Contents, actuators: Element, step: float) -> None:
+    """The motor behind its gear; where current or torque are driven, a passive one beside it ripples and rubs."""
+    gear = contents.base("gear_ratio") if "gear_ratio" in contents.model.actuator.parameters else 1.0
+    if contents.model.actuator.drive == "voltage":
+        motor = child(actuators, "dcmotor", name="motor", joint="shaft", gear=gear)
+        winding(contents, motor)
+        passive = motor
+    else:
+        motor = child(actuators, "motor", name="motor", joint="shaft", gear=torque_per_input(contents))
+        passive = Element("dcmotor", name="friction", joint="shaft", gear=numbers(gear), input="none")
+        passive.attrib.update(motorconst="0 0", resistance="1")
     if ripple := contents.quantity("ripple_torque"):
         phase = contents.quantity("ripple_phase") + math.pi
-        element.set("cogging", numbers(ripple / gear, contents.quantity("ripple_periods"), phase))
+        passive.set("cogging", numbers(ripple / gear, contents.quantity("ripple_periods"), phase))
     if has_bristles(contents):
-        element.set("lugre", bristles(contents, gear, step))
+        passive.set("lugre", bristles(contents, gear, step))
+    if passive is not motor and ("cogging" in passive.attrib or "lugre" in passive.attrib):
+        actuators.append(passive)
     if delay := contents.quantity("command_delay"):
-        element.attrib.update({"delay": numbers(delay), "nsample": str(math.ceil(delay / step - 1e-9))})
+        motor.attrib.update({"delay": numbers(delay), "nsample": str(math.ceil(delay / step - 1e-9))})
+
+
+def winding(contents: Contents, motor: Element) -> None:
+    """Motor constant and winding, with its inductance and its heat."""
+    constant, supply = contents.base("torque_constant"), contents.base("supply_voltage")
+    motor.set("motorconst", numbers(constant, constant))
+    motor.set("resistance", numbers(contents.base("armature_resistance")))
+    motor.set("ctrlrange", numbers(-supply, supply))
+    if inductance := contents.quantity("winding_inductance"):
+        motor.set("inductance", numbers(inductance, 0))
+    if heat := contents.quantity("winding_heat_resistance"):
+        motor.set("thermal", numbers(heat, contents.quantity("winding_heat_capacity"), 0, COPPER, 20, 20))
 
 
 def has_bristles(contents: Contents) -> bool:
@@ -156,7 +168,8 @@ def bristles(contents: Contents, gear: float, step: float) -> str:
     sliding = contents.base("coulomb_friction")
     stiffness, damping = contents.quantity("bristle_stiffness"), contents.quantity("bristle_damping")
     if stiffness == 0.0:
-        stiffness = total_damping(contents) / (RESOLVED * step)
+        damping = contents.base("total_inertia") / (RESOLVED * step)
+        stiffness = (total_damping(contents) + damping) / (RESOLVED * step)
         given = sliding / stiffness
         contents.notes.append(f"Friction is rigid in the model, here it gives {given:.2g} rad before it slides.")
     static = max(contents.quantity("breakaway_friction"), sliding)
@@ -164,10 +177,16 @@ def bristles(contents: Contents, gear: float, step: float) -> str:
     return numbers(stiffness / gear**2, damping / gear**2, sliding / gear, static / gear, fading * gear)
 
 
-def hall_voltage(contents: Contents, root: Element) -> None:
-    """The ends of the Hall sensor as custom numbers: MuJoCo scales no sensor."""
-    closed, opened = contents.base("hall_voltage_closed"), contents.base("hall_voltage_open")
-    if closed == opened:
-        return
-    child(child(root, "custom"), "numeric", name="hall_voltage", data=numbers(closed, opened))
-    contents.notes.append("Hall voltage = closed + (open - closed) x angle / (pi/2), of the custom `hall_voltage`.")
+def characteristic(contents: Contents, root: Element) -> None:
+    """What the sensor makes of angle or velocity, as custom numbers: MuJoCo scales no sensor."""
+    actuator = contents.model.actuator
+    if actuator.quantity == "hall_voltage":
+        name, data = "hall_voltage", (contents.base("hall_voltage_closed"), contents.base("hall_voltage_open"))
+        span = numbers(actuator.sensor_span)
+        note = f"Hall voltage = closed + (open - closed) x angle / {span}, of the custom numbers `hall_voltage`."
+    else:
+        name, data = "sensor", (contents.base("sensor_offset"), contents.base("sensor_scale"))
+        note = "Measured value = offset + scale x true value, of the custom numbers `sensor`."
+    if data != (0.0, 1.0):
+        child(child(root, "custom"), "numeric", name=name, data=numbers(*data))
+        contents.notes.append(note)

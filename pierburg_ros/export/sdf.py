@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import braking, no_load_speed, stall_torque
+from pierburg_ros.export.motor import ENDLESS, braking, largest_speed, largest_torque
 from pierburg_ros.export.remarks import remarks
 from pierburg_ros.export.shaft import shaft
-from pierburg_ros.export.urdf import torque_driven
+from pierburg_ros.export.urdf import KINDS, torque_driven
 from pierburg_ros.export.xml import Element, child, document, numbers
-
-ENDLESS = 1e16
-"""Angle [rad] that SDF takes for no limit."""
 
 
 def sdf(contents: Contents) -> str:
@@ -29,7 +26,7 @@ def sdf(contents: Contents) -> str:
     valued(inertial, {"pose": numbers(0, 0, -moving.lever, 0, 0, 0), "mass": moving.mass})
     tensor = {"ixx": own, "ixy": 0.0, "ixz": 0.0, "iyy": own, "iyz": 0.0, "izz": own}
     valued(child(inertial, "inertia"), tensor)
-    joint = child(model, "joint", name=f"{actuator.name}_joint", type="revolute")
+    joint = child(model, "joint", name=actuator.joint or f"{actuator.name}_joint", type=KINDS[actuator.motion])
     valued(joint, {"parent": "housing", "child": "shaft"})
     axis = child(joint, "axis")
     valued(axis, {"xyz": moving.axis})
@@ -42,7 +39,7 @@ def limits(contents: Contents, limit: Element) -> None:
     """Where the joint ends, how strong and how fast its motor is, and how the stops give."""
     actuator = contents.model.actuator
     lower, upper = max(actuator.lower_stop, -ENDLESS), min(actuator.upper_stop, ENDLESS)
-    motor = {"effort": stall_torque(contents), "velocity": no_load_speed(contents)}
+    motor = {"effort": largest_torque(contents), "velocity": largest_speed(contents)}
     valued(limit, {"lower": lower, "upper": upper, **motor})
     if stiffness := contents.quantity("contact_stiffness"):
         valued(limit, {"stiffness": stiffness, "dissipation": contents.quantity("contact_damping")})

@@ -22,10 +22,12 @@ class Shaft(NamedTuple):
 
 
 def shaft(contents: Contents) -> Shaft:
-    """The body; of a pendulum, half of the inertia is that of its mass on the lever."""
+    """The body; of a pendulum, half of the inertia is that of its mass on the lever. What slides has mass alone."""
     total = contents.base("total_inertia")
+    if contents.model.actuator.motion == "linear":
+        return Shaft(total, 0.0, total, "0 0 1")
     weight = contents.base("gravity_torque") / GRAVITY
-    if contents.model.actuator.load != "pendulum" or weight == 0.0:
+    if weight == 0.0:
         return Shaft(MASS, 0.0, total, "0 0 1")
     lever = 0.5 * total / weight
     return Shaft(weight / lever, lever, 0.5 * total, "0 1 0")

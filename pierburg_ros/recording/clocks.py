@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.messages import Integers, Messages
-from pierburg_ros.recording.roles import Topics
+from pierburg_ros.recording.roles import MEASURED, Topics
 
-MEASURED = ("hall_voltage", "joint_states")
-"""Roles whose messages are samples; those of the others hold until the next one."""
 STAMPED_BESIDE = ("hall_voltage", "applied_duty")
 """Topics that the plant publishes once for each `joint_states`, so that they share its stamp."""
 SHARED = 0.9

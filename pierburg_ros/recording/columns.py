@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +11,17 @@ import numpy as np
 from pierburg_ros.errors import InputError, printable
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples, check_signal
+from pierburg_ros.recording.roles import DRIVING, MEASURED, in_order
 
 COLUMNS = {
     "time": "time",
     "duty": "duty",
     "applied_duty": "applied_duty",
+    "current": "current",
+    "torque": "torque",
     "hall_voltage": "hall_voltage",
     "position": "position",
+    "speed": "speed",
     "supply_voltage": "supply_voltage",
     "setpoints": "setpoint",
     "temperature": "temperature",
@@ -51,37 +55,38 @@ class Columns:
         return ", ".join(self.header)
 
 
-def tabulated(table: Columns, choice: str | None, named: Mapping[str, str]) -> Recording:
-    """The recording in a table; `named` maps signals to columns, `choice` is a clock, which a table has not."""
+def tabulated(
+    table: Columns, choice: str | None, named: Mapping[str, str], preferred: Collection[str] = ()
+) -> Recording:
+    """The recording in a table; `named` maps signals to columns, `choice` is a clock, which a table has not.
+
+    `preferred` are the input and the quantity to take where there are several.
+    """
     if choice is not None:
         raise InputError(f"{table.name} has one clock, its time column; expected no --time. Leave it out.")
     columns = {**COLUMNS, **named}
     absent = sorted(column for column in named.values() if column not in table.cells)
     if absent:
         raise InputError(f"{table.name} has no column {absent[0]} (found: {table.listed()}). Name one of those.")
-    quantity = "hall_voltage" if columns["hall_voltage"] in table.cells else "position"
-    duty = "applied_duty" if columns["applied_duty"] in table.cells and "duty" not in named else "duty"
-    for signal in ("time", duty, quantity):
-        if columns[signal] not in table.cells:
-            raise InputError(
-                f"{table.name} has no {signal} column (found: {table.listed()}), {FORM}."
-                f" Name it with --topic {signal}=COLUMN."
-            )
+    if columns["time"] not in table.cells:
+        raise missing(table, "time")
+    measuring, driving = (first_of(table, columns, roles, named, preferred) for roles in (MEASURED, DRIVING))
+    quantity, driven = MEASURED[measuring], DRIVING[driving]
     time = table.values(columns["time"])
     if np.any(np.isnan(time)):
         raise InputError(f"{table.name} has an empty time in row {np.flatnonzero(np.isnan(time))[0] + 2}. Fill it in.")
-    measured = channel(table, time, columns[quantity])
+    measured = channel(table, time, columns[measuring])
     origin = float(measured.time[0])
     acting = {
         signal: shifted(channel(table, time, columns[signal]), origin)
         for signal in ("supply_voltage", "setpoints", "temperature", "enabled")
         if columns[signal] in table.cells and not np.all(np.isnan(table.values(columns[signal])))
     }
-    inputs = shifted(channel(table, time, columns[duty]), origin)
+    inputs = shifted(channel(table, time, columns[driving]), origin)
     breaks = pauses(measured.time - origin)
     losses = (
         Loss(quantity, None, measured.time.size, breaks),
-        Loss("duty", None, inputs.time.size, silences(inputs.time, inputs.values, breaks)),
+        Loss(driven, None, inputs.time.size, silences(inputs.time, inputs.values, breaks)),
     )
     return Recording(
         table.name,
@@ -91,7 +96,30 @@ def tabulated(table: Columns, choice: str | None, named: Mapping[str, str]) -> R
         inputs,
         time_source="column",
         losses=tuple(loss for loss in losses if loss.spans),
+        input=driven,
         **acting,
+    )
+
+
+def first_of(
+    table: Columns,
+    columns: Mapping[str, str],
+    roles: Mapping[str, str],
+    named: Mapping[str, str],
+    preferred: Collection[str],
+) -> str:
+    """The first of `roles` that has a column; only those that a person named where there are such."""
+    order = [role for role in in_order(roles, named, preferred) if role in columns]
+    for role in order[: len(named.keys() & roles.keys()) or None]:
+        if columns[role] in table.cells:
+            return role
+    raise missing(table, roles[order[0]])
+
+
+def missing(table: Columns, signal: str) -> InputError:
+    """What to say where there is no column of a `signal`."""
+    return InputError(
+        f"{table.name} has no {signal} column (found: {table.listed()}), {FORM}. Name it with --topic {signal}=COLUMN."
     )
 
 

@@ -5,7 +5,7 @@ Parameters, logs, diagnostics, metadata and attachments are never looked at.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,7 @@ from pierburg_ros.recording.formats import cdr, format_of
 from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
-from pierburg_ros.recording.roles import ROLES, Topics, check_names, last_name
+from pierburg_ros.recording.roles import DRIVING, MEASURED, ROLES, Topics, check_names, in_order, last_name
 
 SOURCES = ("stamp", "clock", "publish", "log")
 DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
@@ -32,11 +32,18 @@ ACTING = ("supply_voltage", "enabled")
 """Optional signals without which the simulation of the recording would differ."""
 
 
-def read_recording(path: str | Path, *, time: str | None = None, topics: Mapping[str, str] | None = None) -> Recording:
+def read_recording(
+    path: str | Path,
+    *,
+    time: str | None = None,
+    topics: Mapping[str, str] | None = None,
+    preferred: Collection[str] = (),
+) -> Recording:
     """The recording at `path`.
 
     `topics` names the topic (in a CSV the column) of a role, e.g. {"duty": "/bench/pwm"}; `time` chooses the
-    clock, one of stamp, clock, publish and log, where the best one recorded is not wanted.
+    clock, one of stamp, clock, publish and log, where the best one recorded is not wanted. `preferred` are the input
+    and the quantity to take where the recording holds several, e.g. ("current", "speed").
     """
     path, named = Path(path), dict(topics or {})
     if time is not None and time not in SOURCES:
@@ -48,7 +55,10 @@ def read_recording(path: str | Path, *, time: str | None = None, topics: Mapping
     with reading(path, "a recording"), np.errstate(all="ignore"):
         found = format_of(path).read(path, wanted)
         check_names(named, COLUMNS if isinstance(found, Columns) else ROLES)
-        made = tabulated(found, time, named) if isinstance(found, Columns) else assemble(Topics(found, named), time)
+        if isinstance(found, Columns):
+            made = tabulated(found, time, named, preferred)
+        else:
+            made = assemble(Topics(found, named), time, preferred)
         check_bounds(made)
     return made
 
@@ -56,8 +66,8 @@ def read_recording(path: str | Path, *, time: str | None = None, topics: Mapping
 def check_bounds(recording: Recording) -> None:
     """Refuse what no bench gives: values beyond any sensor, and times that no motion needs."""
     check_magnitude(f"{recording.name}: {recording.quantity}", recording.measured)
-    for signal in ("duty", *OPTIONAL):
-        channel = getattr(recording, signal)
+    channels = {recording.input: recording.command, **{signal: getattr(recording, signal) for signal in OPTIONAL}}
+    for signal, channel in channels.items():
         if channel is not None:
             check_magnitude(f"{recording.name}: {signal}", channel.values)
             check_magnitude(f"{recording.name}: time of {signal} [s]", channel.time)
@@ -69,10 +79,13 @@ def check_bounds(recording: Recording) -> None:
         )
 
 
-def assemble(topics: Topics, choice: str | None) -> Recording:
+def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()) -> Recording:
     """The recording that the messages of `topics` make, timed by the `choice` of clock."""
     name = topics.bag.name
-    found = {"measured": measured(topics), "duty": duty(topics)}
+    found = {
+        "measured": first_of(topics, MEASURED, preferred, "measured signal"),
+        "command": first_of(topics, DRIVING, preferred),
+    }
     found |= {role: (role, messages) for role in OPTIONAL if (messages := topics.find(role)) is not None}
     clocks = Clocks(topics, choice)
     timed: dict[str, Timed] = {}
@@ -80,7 +93,7 @@ def assemble(topics: Topics, choice: str | None) -> Recording:
         times = clocks.time(role, messages)
         if times is not None and times.time.size:
             timed[signal] = times
-        elif signal in ("measured", "duty", *ACTING):
+        elif signal in ("measured", "command", *ACTING):
             raise InputError(
                 f"{name}: {messages.topic} has no {choice} time, expected one for every message."
                 " Choose another clock with --time {stamp,clock,publish,log}."
@@ -89,25 +102,32 @@ def assemble(topics: Topics, choice: str | None) -> Recording:
         check_one_clock(name, timed["measured"], timed[signal])
     origin = timed["measured"].time[0]
     channels = {signal: Channel(*samples(name, times, int(origin))) for signal, times in timed.items()}
-    quantity = "hall_voltage" if found["measured"][0] == "hall_voltage" else "position"
+    quantity, driven = MEASURED[found["measured"][0]], DRIVING[found["command"][0]]
     first = channels.pop("measured")
-    sources = dict.fromkeys(timed[signal].source for signal in ("measured", "duty"))
-    losses = lost({**channels, "measured": first}, timed, quantity)
+    sources = dict.fromkeys(timed[signal].source for signal in ("measured", "command"))
+    losses = lost({**channels, "measured": first}, timed, {"measured": quantity, "command": driven})
     return Recording(
-        name, quantity, first.time, first.values, **channels, time_source=", ".join(sources), losses=losses
+        name,
+        quantity,
+        first.time,
+        first.values,
+        **channels,
+        time_source=", ".join(sources),
+        losses=losses,
+        input=driven,
     )
 
 
-def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], quantity: str) -> tuple[Loss, ...]:
+def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], names: Mapping[str, str]) -> tuple[Loss, ...]:
     """What is missing in each signal: by its numbers, or else by pauses in what was measured and in the input."""
     found = []
     breaks = pauses(channels["measured"].time)
     for signal, channel in channels.items():
-        name = quantity if signal == "measured" else signal
+        name = names.get(signal, signal)
         sequence = timed[signal].messages.sequence[timed[signal].kept]
         if are_numbered(sequence):
             found.append(numbered_loss(name, channel.time, sequence))
-        elif signal in ("measured", "duty"):
+        elif signal in names:
             spans = breaks if signal == "measured" else silences(channel.time, channel.values, breaks)
             found.append(Loss(name, None, channel.time.size, spans))
     return tuple(loss for loss in found if loss.spans)
@@ -126,27 +146,22 @@ def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
     return time, values
 
 
-def measured(topics: Topics) -> tuple[str, Messages]:
-    """Role and messages of what was measured; Hall voltage before position."""
-    for role in ("hall_voltage", "joint_states"):
+def first_of(
+    topics: Topics, roles: Mapping[str, str], preferred: Collection[str], what: str = ""
+) -> tuple[str, Messages]:
+    """Role and messages of the first of `roles` that has any; only those that a person named where there are such."""
+    order = in_order(roles, topics.named, preferred)
+    for role in order[: len(topics.named.keys() & roles.keys()) or None]:
         if (messages := topics.find(role)) is not None:
             return role, messages
-    raise missing(topics, "measured signal", ("hall_voltage", "joint_states"))
+    raise missing(topics, what or roles[order[0]], roles[order[0]], order)
 
 
-def duty(topics: Topics) -> tuple[str, Messages]:
-    """Role and messages of the input: what the plant says it applied, unless a person names a duty."""
-    for role in ("duty",) if "duty" in topics.named else ("applied_duty", "duty"):
-        if (messages := topics.find(role)) is not None:
-            return role, messages
-    raise missing(topics, "duty", ("duty", "applied_duty"))
-
-
-def missing(topics: Topics, what: str, roles: tuple[str, ...]) -> InputError:
-    """What to say where none of `roles` has messages."""
-    name, option = topics.bag.name, f"--topic {roles[0]}=/your/topic"
+def missing(topics: Topics, what: str, role: str, roles: Sequence[str]) -> InputError:
+    """What to say where none of `roles` has messages; a person may name a topic for `role`."""
+    name, option = topics.bag.name, f"--topic {role}=/your/topic"
     if topics.bag.count == 0:
-        return InputError(f"{name} holds no messages, expected {' or '.join(roles)} and more. Record again.")
+        return InputError(f"{name} holds no messages, expected a measured signal and what drove it. Record again.")
     empty = [topic for topic in (topics.topic(role) for role in roles) if topic is not None]
     if empty:
         return InputError(f"{name} has no messages on {empty[0]}, expected a {what}. Name another with {option}.")

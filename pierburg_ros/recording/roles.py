@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from pierburg_ros.errors import InputError
@@ -12,8 +12,12 @@ from pierburg_ros.recording.formats.messages import Bag, Messages
 ROLES = {
     "duty": FLOAT64,
     "applied_duty": FLOAT64,
+    "current": FLOAT64,
+    "torque": FLOAT64,
     "hall_voltage": FLOAT64,
     "joint_states": JOINT_STATE,
+    "position": FLOAT64,
+    "speed": FLOAT64,
     "supply_voltage": FLOAT64,
     "temperature": FLOAT64,
     "enabled": BOOL,
@@ -21,6 +25,15 @@ ROLES = {
     "clock": CLOCK,
 }
 """Type of the topic of each role; a recording is read through these and nothing else."""
+MEASURED = {"hall_voltage": "hall_voltage", "joint_states": "position", "position": "position", "speed": "speed"}
+"""Quantity that a role measures; where a recording holds several, the first is taken."""
+DRIVING = {"applied_duty": "duty", "duty": "duty", "current": "current", "torque": "torque"}
+"""Input that a role gives, likewise: what the plant says it applied comes before what was asked for."""
+
+
+def in_order(roles: Mapping[str, str], named: Collection[str], preferred: Collection[str]) -> list[str]:
+    """`roles`, first those that a person named, then those that are `preferred`, then as they stand."""
+    return sorted(roles, key=lambda role: (role not in named, roles[role] not in preferred))
 
 
 def last_name(topic: str) -> str:

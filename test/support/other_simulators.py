@@ -28,7 +28,7 @@ def mujoco_angle(model: Model, inputs: Inputs, samples: np.ndarray) -> np.ndarra
     count = round((samples[1] - samples[0]) / compiled.opt.timestep)
     assert count * compiled.opt.timestep == np.float64(samples[1] - samples[0]).round(9)
     place = np.maximum(np.searchsorted(inputs.time, samples + 1e-9, side="right") - 1, 0)
-    volts = inputs.duty[place] * model.values["supply_voltage"]
+    volts = inputs.command[place] * model.values["supply_voltage"]
     angles = np.empty(samples.size)
     for index, voltage in enumerate(volts):
         angles[index], data.ctrl[0] = data.qpos[0], voltage
@@ -59,7 +59,7 @@ def modelica_output(text: str, inputs: Inputs, samples: np.ndarray) -> np.ndarra
         return [found[f"der({name})"] for name in states]
 
     measured, state, edges = [], start, np.append(inputs.time, samples[-1] + 1e-6)
-    for duty, begin, end in zip(inputs.duty, edges[:-1], edges[1:], strict=True):
+    for duty, begin, end in zip(inputs.command, edges[:-1], edges[1:], strict=True):
         within = np.maximum(samples[(samples >= begin - 1e-9) & (samples < end - 1e-9)], begin)
         solved = solve_ivp(
             rates, (begin, end), state, "LSODA", np.append(within, end), args=(duty,), rtol=1e-6, atol=1e-9

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
-from pierburg_ros.diagnosis.location.windows import windows
+from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.schema import (
@@ -215,7 +215,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
             {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
         )
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
-    found = windows(motion.time, mark**2)
+    found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
     return locations(motion, residual, found), regimes(motion, residual)
 
 
@@ -241,7 +241,7 @@ def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
     return {
         "time": run.time,
         "measured": run.measured,
-        "duty": run.inputs.duty[place],
+        "duty": run.inputs.command[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
         "final": run.simulated(conclusion.model, conclusion.final.switch),

@@ -40,7 +40,10 @@ def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
     for effect in possible(data.actuator):
         for variant in effect.variants:
             starts = variant.starts(missing) if callable(variant.starts) else variant.starts
-            found[Variant(effect.id, variant.free, tuple(variant.fixed.items()))] = list(starts)
+            fixed = effect.in_units(variant.fixed, model.scales)
+            found[Variant(effect.id, variant.free, tuple(fixed.items()))] = [
+                effect.in_units(start, model.scales) for start in starts
+            ]
     return found
 
 

@@ -58,7 +58,7 @@ def angle_of(recording: Recording, actuator: Actuator) -> Signal:
 
 def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     """The stretches of constant duty, in order, each cut to its longest part clear of the stops."""
-    duty = recording.duty.at(recording.time, before=0.0)
+    duty = recording.command.at(recording.time, before=0.0)
     angle = angle_of(recording, actuator)
     clear = (angle > actuator.lower_stop + STOP_MARGIN) & (angle < actuator.upper_stop - STOP_MARGIN)
     edges = np.flatnonzero((np.diff(duty) != 0.0) | (np.diff(clear.astype(int)) != 0)) + 1

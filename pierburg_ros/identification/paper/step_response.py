@@ -58,8 +58,8 @@ def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
     """The upward steps of duty that find the shaft on the closed stop, each until the duty changes again."""
     angle = angle_of(recording, actuator)
     found = []
-    times = [*recording.duty.time, recording.time[-1] + 1e-9]
-    for start, end, duty in zip(times[:-1], times[1:], recording.duty.values, strict=True):
+    times = [*recording.command.time, recording.time[-1] + 1e-9]
+    for start, end, duty in zip(times[:-1], times[1:], recording.command.values, strict=True):
         inside = (recording.time >= start) & (recording.time < end)
         before = (recording.time < start) & (recording.time >= start - 0.02)
         if end - start < 0.5 or not before.any() or np.mean(angle[before]) > 0.5 * STOP_MARGIN:
