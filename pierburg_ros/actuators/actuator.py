@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from pierburg_ros.actuators.units import Motion, unit_of
-from pierburg_ros.effects.effect import Drive, Load, Sensor
+from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
 
 Input = Literal["duty", "current", "torque"]
@@ -94,6 +94,10 @@ class Actuator:
         """Whether anything ends its travel."""
         return math.isfinite(self.lower_stop) or math.isfinite(self.upper_stop)
 
+    def obstacle(self, effect: Effect) -> str:
+        """Why `effect` cannot act in this actuator, in words; nothing where it can."""
+        return effect.obstacle(self.drive, self.load, self.quantity, self.has_stops)
+
     @property
     def sensor_span(self) -> float:
         """Angle between the two Hall end voltages [rad]; of a linear actuator its upper stop, or 1 m without one."""
@@ -104,7 +108,11 @@ class Actuator:
     @property
     def unit(self) -> str:
         """Unit of the measured quantity."""
-        return unit_of(SENSED[self.quantity], self.motion)
+        return self.shown(SENSED[self.quantity])
+
+    def shown(self, unit: str) -> str:
+        """A declared `unit` as this actuator has it: every output says it so."""
+        return unit_of(unit, self.motion)
 
     @property
     def free(self) -> tuple[str, ...]:

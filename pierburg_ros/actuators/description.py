@@ -10,14 +10,14 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding
-from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.actuators.units import Motion
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Drive, Load, Sensor
 from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import parsed, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
-SHIPPED = ("pierburg", "xl330")
+SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
 """Actuators that come with the package."""
 
 _MOTOR = {"torque_constant", "gear_ratio"}
@@ -186,7 +186,7 @@ def _first_problem(error: ValidationError) -> str:
     return f"{place}: {message}" if place else message
 
 
-def _parameter(name: str, given: _Parameter, motion: Motion, sensor: Sensor) -> NominalParameter:
+def _parameter(name: str, given: _Parameter, sensor: Sensor) -> NominalParameter:
     unit, meaning = UNITS[name]
     if name == "sensor_offset":
         unit = SENSED[sensor]
@@ -194,7 +194,7 @@ def _parameter(name: str, given: _Parameter, motion: Motion, sensor: Sensor) -> 
         name,
         given.nominal,
         meaning,
-        unit_of(unit, motion),
+        unit,
         given.minimum,
         given.maximum,
         origin=given.origin,
@@ -218,8 +218,7 @@ def _sensor_parameters(description: _Description) -> dict[str, _Parameter]:
 
 def _actuator(description: _Description) -> Actuator:
     given = {**_sensor_parameters(description), **description.parameters}
-    motion, sensor = description.motion, description.sensor
-    parameters = {name: _parameter(name, p, motion, sensor) for name, p in given.items()}
+    parameters = {name: _parameter(name, p, description.sensor) for name, p in given.items()}
     stops, winding = description.stops, description.winding
     return Actuator(
         printable(description.name),
@@ -231,7 +230,7 @@ def _actuator(description: _Description) -> Actuator:
         stops.upper if stops else math.inf,
         description.effects,
         description.drive,
-        motion,
+        description.motion,
         printable(description.joint),
         Winding(winding.rated_current, winding.time_constant, printable(winding.origin)) if winding else None,
     )

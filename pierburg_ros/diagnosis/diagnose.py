@@ -10,6 +10,7 @@ from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts
@@ -22,17 +23,23 @@ def diagnose(
     nominal: Model,
     progress: Progress = lambda _: None,
     jobs: int | None = None,
+    simulation: Sequence[Recording] = (),
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core.
-    InputError where the recordings cannot be used.
+    InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
+    model: `nominal` is then fitted to them first.
     """
+    simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
+    nominal = simulator.model if simulator else nominal
     data = evidence(recordings, nominal)
+    data = simulator.kept_apart(data) if simulator else data
     found = search(data, nominal, progress, jobs)
     rest = remainder(found, progress, jobs) if verdict_on(found.chosen) == "unexplained" else None
     conclusion = conclude(found, rest)
-    return Result(document(found, conclusion), conclusion.model, data.runs, signals(longest(data), conclusion))
+    result = Result(document(found, conclusion), conclusion.model, data.runs, signals(longest(data), conclusion))
+    return simulator.told(result) if simulator else result
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

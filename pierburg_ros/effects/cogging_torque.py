@@ -3,17 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import (
-    MOTORS,
-    QUADRATURE,
-    Effect,
-    Elsewhere,
-    Missing,
-    Parameter,
-    Ripple,
-    Start,
-    Variant,
-)
+from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, Parameter, Ripple, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -77,7 +67,7 @@ EFFECT = Effect(
         Parameter(
             "periods_per_motor_revolution",
             None,
-            "ripple periods in one turn of the motor",
+            "ripple periods in one turn of the motor, of the output under a torque drive",
             "1",
             0.0,
             1000.0,
@@ -92,7 +82,6 @@ EFFECT = Effect(
     typical={"amplitude": 0.0112, "periods_per_motor_revolution": 6.0},
     variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts),),
     ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
-    drives=MOTORS,
     turns_within=_quarter_turn,
 )
 

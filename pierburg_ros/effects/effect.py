@@ -257,10 +257,16 @@ class Effect:
         """Whether it acts in a model with these `values`, by dotted name."""
         return any(values[f"{self.id}.{name}"] != 0.0 for name in self.strength)
 
-    def acts_on(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> bool:
-        """Whether it can act in an actuator of this kind."""
-        fits = drive in self.drives and load in self.loads and sensor in self.sensors
-        return fits and (stops or not self.stops)
+    def obstacle(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> str:
+        """Why it cannot act in an actuator of this kind, in words; nothing where it can."""
+        for what, has, needed in (
+            ("drive", drive, self.drives),
+            ("load", load, self.loads),
+            ("sensor", sensor, self.sensors),
+        ):
+            if has not in needed:
+                return f"it needs {what} {' or '.join(needed)}, and the actuator has {what} {has}".replace("_", " ")
+        return "it needs stops, and the actuator has none" if self.stops and not stops else ""
 
 
 def grid(**values: tuple[float, ...]) -> tuple[Start, ...]:

@@ -20,6 +20,12 @@ def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> N
     return np.asarray(sensor.decode_all(record, values.ravel(), is_angle)).reshape(values.shape)
 
 
+def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
+    """Hall voltage [V] that a straight sensor with the ends of `model` shows at each `angle` [rad], same shape."""
+    record = model.record()[0]
+    return np.asarray(record["hall_voltage_closed"] + sensor.per_radian(record) * np.asarray(angle, dtype=np.float64))
+
+
 def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:
     """Change of the measured value per rad at `angle` [rad]; of a speed sensor per rad/s."""
     return float(sensor.sensitivity(model.record()[0], angle, _is_angle(model, quantity)))

@@ -112,6 +112,9 @@ class Model:
                 raise InputError(
                     f"{name} is {value:g}; expected less than {declared.below}, {self.values[declared.below]:g}."
                 )
+        for effect in self.active_effects:
+            if obstacle := self.actuator.obstacle(EFFECT[effect]):
+                raise InputError(f"{effect} cannot act in actuator {self.actuator.name}: {obstacle}. Leave it out.")
         ends = [self.values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
         if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
             raise InputError(

@@ -14,7 +14,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import new_state
+from pierburg_ros.plant.state import STATE, new_state, place
 from pierburg_ros.plant.torques.sensor import measured, quantised
 from pierburg_ros.workers import workers
 
@@ -128,6 +128,20 @@ def simulate_many(
     return output
 
 
+def simulate_stretches(
+    model: Model, inputs: Inputs, sample_times: ArrayLike, first: NDArray[np.int64], angle: Signal, velocity: Signal
+) -> Signal:
+    """`simulate` in stretches that begin at the samples `first`, each at its own angle [rad] and velocity [rad/s].
+
+    `first`, `angle` and `velocity` are of shape (stretches,).
+    """
+    times = _increasing(sample_times)
+    output = np.empty(times.size)
+    states = np.zeros(first.size, STATE)
+    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, output)
+    return output
+
+
 def _run_into(
     output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
 ) -> None:
@@ -172,6 +186,19 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
         supply = supply_voltage[earlier - 1] if supply_voltage.size > 0 else np.nan
         closed = enabled[earlier - 1] if enabled.size > 0 else True
         recall(p, s, input_times[:earlier], command[:earlier], supply, closed)
+
+
+@kernel
+def run_stretches(
+    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, output
+):
+    """`run` from each of the samples `first` to the next, at its own angle and velocity; `states` are all zeros."""
+    for stretch in range(first.size):
+        end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
+        times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
+        place(p, states[stretch], angle[stretch], velocity[stretch])
+        begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
+        run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
 
 
 @kernel

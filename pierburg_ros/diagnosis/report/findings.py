@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
@@ -16,6 +16,7 @@ from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
+    CannotAct,
     Change,
     Diagnosis,
     Effect,
@@ -33,7 +34,7 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain, tied
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
@@ -64,6 +65,7 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
+        cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise),
         advice=words.advice(conclusion.verdict, named, parameters_found, hidden, limits),
@@ -122,7 +124,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=found.nominal.values[name],
             value=final.model.values[name],
-            unit=UNITS[name][0],
+            unit=actuator.parameters[name].unit,
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
@@ -197,6 +199,12 @@ def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
         for effect, mark in marks.items()
         if mark < SIGNIFICANT
     ]
+
+
+def cannot_act(actuator: Actuator) -> list[CannotAct]:
+    """Effects that are searched for elsewhere and cannot act in this kind of actuator."""
+    obstacles = {effect.id: actuator.obstacle(effect) for effect in EFFECTS if effect.variants}
+    return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
 
 
 def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
