@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.torques import sensor
@@ -24,6 +25,12 @@ def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
     """Hall voltage [V] that a straight sensor with the ends of `model` shows at each `angle` [rad], same shape."""
     record = model.record()[0]
     return np.asarray(record["hall_voltage_closed"] + sensor.per_radian(record) * np.asarray(angle, dtype=np.float64))
+
+
+def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
+    """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
+    shown = decoded(model, measured, quantity)
+    return cumulative_trapezoid(shown, time, initial=0.0) if quantity == "speed" else shown
 
 
 def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:
