@@ -12,6 +12,7 @@ from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
@@ -26,14 +27,19 @@ def diagnose(
     progress: Progress = lambda _: None,
     jobs: int | None = None,
     budget: float | None = None,
+    simulation: Sequence[Recording] = (),
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
     `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; without a budget it takes what it takes.
-    InputError where the recordings cannot be used.
+    InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
+    model: `nominal` is then fitted to them first.
     """
+    simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
+    nominal = simulator.model if simulator else nominal
     data = evidence(recordings, nominal)
+    data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
     found = search(data, nominal, progress, jobs, deadline=deadline)
     rest = None
@@ -45,7 +51,8 @@ def diagnose(
     )
     excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    return Result(written, conclusion.model, data.runs, signals(longest(data), conclusion))
+    result = Result(written, conclusion.model, data.runs, signals(longest(data), conclusion))
+    return simulator.told(result) if simulator else result
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:
