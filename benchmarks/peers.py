@@ -55,7 +55,9 @@ def creep(run: Simulator) -> float:
 def _pieces(inputs: Inputs, times: np.ndarray) -> list[tuple[float, float, float]]:
     """Begin, end [s] and armature voltage [V] of each interval of constant duty."""
     edges = np.append(inputs.time, times[-1])
-    return [(float(a), float(b), SUPPLY * float(d)) for a, b, d in zip(edges[:-1], edges[1:], inputs.duty, strict=True)]
+    return [
+        (float(a), float(b), SUPPLY * float(d)) for a, b, d in zip(edges[:-1], edges[1:], inputs.command, strict=True)
+    ]
 
 
 def lsoda_with_events(inputs: Inputs, times: np.ndarray) -> np.ndarray:
@@ -141,7 +143,7 @@ def mujoco_steps(inputs: Inputs, times: np.ndarray, step: float = 1e-3) -> np.nd
         </mujoco>""")
     data = mujoco.MjData(model)
     every = round(float(times[1] - times[0]) / step)
-    duty = np.append(0.0, inputs.duty)[np.searchsorted(inputs.time, times, side="right")]
+    duty = np.append(0.0, inputs.command)[np.searchsorted(inputs.time, times, side="right")]
     torque = CONSTANT * SUPPLY * duty / RESISTANCE - PRELOAD
     angles = np.empty(times.size)
     for sample, push in enumerate(torque):

@@ -56,7 +56,7 @@ nominal = Model.nominal(actuator)
 inputs = Inputs(np.arange(60) * 0.2, np.concatenate([[0.0], random.uniform(-0.1, 0.4, 59)]))
 time = np.arange(6000) / 500.0
 measured = simulate_measurement(nominal.with_values({"output_filter.time_constant": 0.02}), inputs, time, 0.003)
-channel = Channel(inputs.time, inputs.duty)
+channel = Channel(inputs.time, inputs.command)
 estimator = Estimator(data_of([Recording("run", "hall_voltage", time, measured, channel)], nominal), nominal)
 starts = starts_of(estimator.data, nominal)
 (variant,) = [each for each in starts if each.effect == "output_filter"]

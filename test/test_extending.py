@@ -37,7 +37,7 @@ nominal = Model.nominal(read_actuator("pierburg"))
 time = np.arange(600) / 100.0
 inputs = Inputs(np.array([0.0, 3.0]), np.array([0.0, 0.2]))
 measured = simulate(nominal, inputs, time) + 0.003 * np.random.default_rng(1).standard_normal(time.size)
-found = diagnose([Recording("made", "hall_voltage", time, measured, Channel(inputs.time, inputs.duty))], nominal)
+found = diagnose([Recording("made", "hall_voltage", time, measured, Channel(inputs.time, inputs.command))], nominal)
 text = found.diagnosis.text()
 Diagnosis.model_validate_json(text)
 print(json.dumps(json.loads(text)))

@@ -17,7 +17,7 @@ ALLOWED = {
     "processes": {"errors"},
     "workers": {"errors"},
     "intake": {"errors"},
-    "effects": {"errors", "kernel", "parameter"},
+    "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
     "plant": {"errors", "kernel", "intake", "parameter", "workers", "effects", "actuators", "arrays"},
     "control": {"errors", "kernel", "intake", "parameter"},
@@ -66,7 +66,25 @@ ROOMS = {
         "signal_path": {"torques", "motion", "gear", "state"},
     },
     "proof": {"formulation": set()},
-    "recording": {"formats": {"columns", "loss", "recording", "roles"}},
+    "recording": {
+        "formats": {"columns", "loss"},
+        "signals": {"formats"},
+        "signal_map": {"signals"},
+        "decoding": {"formats", "signal_map", "signals"},
+        "topics": {"decoding", "formats", "signal_map", "signals"},
+        "read": {"clocks", "columns", "formats", "loss", "recording", "signal_map", "signals", "tables", "topics"},
+        "inspection": {
+            "clocks",
+            "columns",
+            "decoding",
+            "formats",
+            "loss",
+            "read",
+            "recording",
+            "signal_map",
+            "signals",
+        },
+    },
 }
 """Rooms inside a part, and which others of them each may import. What is not named stands above, and may import all."""
 ROS = {

@@ -2,5 +2,6 @@
 
 from pierburg_ros.actuators.actuator import Actuator, NominalParameter
 from pierburg_ros.actuators.description import SHIPPED, read_actuator
+from pierburg_ros.actuators.scales import Scales
 
-__all__ = ["SHIPPED", "Actuator", "NominalParameter", "read_actuator"]
+__all__ = ["SHIPPED", "Actuator", "NominalParameter", "Scales", "read_actuator"]

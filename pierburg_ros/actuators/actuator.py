@@ -1,4 +1,4 @@
-"""An actuator as data: what loads it, where it stops, what its sensor gives, and its nominal numbers."""
+"""An actuator as data: what drives and loads it, where it stops, what its sensor gives, and its nominal numbers."""
 
 from __future__ import annotations
 
@@ -6,11 +6,16 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal
 
+from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
 
-Load = Literal["spring", "pendulum"]
-Quantity = Literal["hall_voltage", "position"]
-Unit = Literal["V", "rad"]
+Input = Literal["duty", "current", "torque"]
+
+INPUT: dict[Drive, Input] = {"voltage": "duty", "current": "current", "torque": "torque"}
+"""What drives the actuator: a signed duty [1] of the supply voltage, a current [A], or a torque at the output [N.m]."""
+SENSED = {"hall_voltage": "V", "position": "rad", "speed": "rad/s"}
+"""Unit of what each sensor gives, of a rotary actuator."""
 
 UNITS = {
     "armature_resistance": ("ohm", "resistance of the armature winding, R"),
@@ -24,6 +29,9 @@ UNITS = {
     "supply_voltage": ("V", "supply of the motor driver"),
     "hall_voltage_closed": ("V", "Hall voltage at angle 0"),
     "hall_voltage_open": ("V", "Hall voltage at angle pi/2"),
+    "torque_scale": ("1", "torque at the output per recorded torque"),
+    "sensor_scale": ("1", "measured change per true one"),
+    "sensor_offset": ("rad", "measured value where the true one is 0"),
 }
 """Unit and meaning of each base parameter of an actuator."""
 
@@ -34,6 +42,8 @@ class NominalParameter(Parameter):
 
     free: bool = True
     """Whether a fit may change it."""
+    fixed_by: str = ""
+    """What makes it known where no fit may change it, or what it cannot be told from."""
 
     @property
     def nominal(self) -> float:
@@ -43,22 +53,66 @@ class NominalParameter(Parameter):
 
 
 @dataclass(frozen=True)
+class Winding:
+    """Thermal constants for the stall protection; not validated where the description says no origin."""
+
+    rated_current: float
+    """Current that the winding bears for ever [A]."""
+    time_constant: float
+    """Time constant of its heat [s]."""
+    origin: str = ""
+
+
+@dataclass(frozen=True)
 class Actuator:
-    """What is simulated. Stops in rad, infinite where there are none; `effects` act in the nominal description too."""
+    """What is simulated. Stops in rad, infinite where there are none; `effects` act in the nominal description too.
+
+    All of a linear actuator is in m and N where that of a rotary one is in rad and N.m. `quantity` is what the sensor
+    gives, `joint` its name in joint_states.
+    """
 
     name: str
     title: str
     load: Load
-    quantity: Quantity
+    quantity: Sensor
     parameters: dict[str, NominalParameter]
     lower_stop: float = -math.inf
     upper_stop: float = math.inf
     effects: dict[str, dict[str, float]] = field(default_factory=dict)
+    drive: Drive = "voltage"
+    motion: Motion = "rotary"
+    joint: str = ""
+    winding: Winding | None = None
 
     @property
-    def unit(self) -> Unit:
+    def input(self) -> Input:
+        """What drives it, as recordings call it."""
+        return INPUT[self.drive]
+
+    @property
+    def has_stops(self) -> bool:
+        """Whether anything ends its travel."""
+        return math.isfinite(self.lower_stop) or math.isfinite(self.upper_stop)
+
+    def obstacle(self, effect: Effect) -> str:
+        """Why `effect` cannot act in this actuator, in words; nothing where it can."""
+        return effect.obstacle(self.drive, self.load, self.quantity, self.has_stops)
+
+    @property
+    def sensor_span(self) -> float:
+        """Angle between the two Hall end voltages [rad]; of a linear actuator its upper stop, or 1 m without one."""
+        if self.motion == "rotary":
+            return math.pi / 2
+        return self.upper_stop if math.isfinite(self.upper_stop) else 1.0
+
+    @property
+    def unit(self) -> str:
         """Unit of the measured quantity."""
-        return "V" if self.quantity == "hall_voltage" else "rad"
+        return self.shown(SENSED[self.quantity])
+
+    def shown(self, unit: str) -> str:
+        """A declared `unit` as this actuator has it: every output says it so."""
+        return unit_of(unit, self.motion)
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -9,30 +9,49 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from pierburg_ros.actuators.actuator import UNITS, Actuator, Load, NominalParameter, Quantity
+from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding
+from pierburg_ros.actuators.units import Motion
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects.effect import Drive, Load, Sensor
 from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import parsed, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
-SHIPPED = ("pierburg", "xl330")
+SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
 """Actuators that come with the package."""
 
-_COMMON = {
+_MOTOR = {"torque_constant", "gear_ratio"}
+_COMMON = {"coulomb_friction", "total_inertia"}
+_DRIVE: dict[str, set[str]] = {
+    "voltage": _MOTOR | {"armature_resistance", "supply_voltage"},
+    "current": _MOTOR,
+    "torque": set(),
+}
+_LOAD: dict[str, set[str]] = {
+    "spring": {"spring_stiffness", "spring_preload"},
+    "pendulum": {"gravity_torque"},
+    "none": set(),
+}
+_POSITIVE = {
     "armature_resistance",
     "torque_constant",
     "gear_ratio",
-    "coulomb_friction",
     "total_inertia",
-    "supply_voltage",
+    "torque_scale",
+    "sensor_scale",
 }
-_NEEDED = {"spring": {"spring_stiffness", "spring_preload"}, "pendulum": {"gravity_torque"}}
-_POSITIVE = {"armature_resistance", "torque_constant", "gear_ratio", "total_inertia"}
 _MAGNITUDES = {"spring_stiffness", "coulomb_friction", "supply_voltage"}
+FULL_TURN = 2.0 * math.pi
+"""The zero of a sensor may be off by so much [rad], where nothing says how far the shaft can go."""
 SMALLEST = 1e-18
 """Least value that counts as above 0: the inertia of a micro-motor's rotor is 1e-14 kg.m^2."""
-_SENSOR = {"hall_voltage": {"hall_voltage_closed", "hall_voltage_open"}, "position": set[str]()}
-
+_SENSOR: dict[str, set[str]] = {
+    "hall_voltage": {"hall_voltage_closed", "hall_voltage_open"},
+    "position": set(),
+    "speed": set(),
+}
+_GIVEN = {"position": {"sensor_scale", "sensor_offset"}, "speed": {"sensor_scale", "sensor_offset"}}
+"""What a sensor has without being told: it shows the truth until a fit finds that it does not."""
 
 FORM = "an actuator description (YAML)"
 
@@ -47,6 +66,7 @@ class _Parameter(_Strict):
     maximum: float
     origin: str = Field(min_length=1)
     free: bool = True
+    fixed_by: str = Field(default="", max_length=200)
 
     @model_validator(mode="after")
     def _in_range(self) -> _Parameter:
@@ -60,22 +80,28 @@ class _Stops(_Strict):
     upper: float
 
 
+class _Winding(_Strict):
+    rated_current: float = Field(gt=0.0)
+    time_constant: float = Field(gt=0.0)
+    origin: str = Field(min_length=1)
+
+
 class _Description(_Strict):
     name: str = Field(min_length=1, max_length=80)
     title: str = Field(default="", max_length=200)
+    drive: Drive = "voltage"
     load: Load
-    sensor: Quantity
+    sensor: Sensor
+    motion: Motion = "rotary"
+    joint: str = Field(default="", max_length=80)
+    winding: _Winding | None = None
     stops: _Stops | None = None
     parameters: dict[str, _Parameter]
     effects: dict[str, dict[str, float]] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _complete(self) -> _Description:
-        needed = _COMMON | _NEEDED[self.load] | _SENSOR[self.sensor]
-        if missing := sorted(needed - set(self.parameters)):
-            raise ValueError(f"parameters lacks {', '.join(missing)}, needed with load {self.load}")
-        if unknown := sorted(set(self.parameters) - set(UNITS)):
-            raise ValueError(f"parameters has unknown {', '.join(unknown)}; known: {', '.join(UNITS)}")
+        self._parameters_fit()
         if self.stops and self.stops.lower >= self.stops.upper:
             raise ValueError("stops.lower must be less than stops.upper")
         self._possible()
@@ -85,11 +111,26 @@ class _Description(_Strict):
             _check_effect(effect, values)
         return self
 
+    def _parameters_fit(self) -> None:
+        """Refuse parameters that are missing or mean nothing with this drive, load and sensor."""
+        kind = f"drive {self.drive}, load {self.load} and sensor {self.sensor}"
+        needed = _COMMON | _DRIVE[self.drive] | _LOAD[self.load] | _SENSOR[self.sensor]
+        optional = _GIVEN.get(self.sensor, set()) | ({"torque_scale"} if self.drive == "torque" else set())
+        optional |= set() if self.load == "none" else _LOAD["spring"] | _LOAD["pendulum"]
+        if missing := sorted(needed - set(self.parameters)):
+            raise ValueError(f"parameters lacks {', '.join(missing)}, needed with {kind}")
+        if unknown := sorted(set(self.parameters) - set(UNITS)):
+            raise ValueError(f"parameters has unknown {', '.join(unknown)}; known: {', '.join(UNITS)}")
+        if idle := sorted(set(self.parameters) - needed - optional):
+            raise ValueError(f"parameters has {', '.join(idle)}, without meaning with {kind}; leave it out")
+
     def _possible(self) -> None:
         """Refuse ranges that no actuator has: equations divide by some numbers, and others are magnitudes."""
         for name, parameter in self.parameters.items():
             if name in _POSITIVE and not parameter.minimum >= SMALLEST:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum above 0")
+            if name == "supply_voltage" and not parameter.nominal > 0.0:
+                raise ValueError("supply_voltage is nominally 0; expected the voltage that drives the motor")
             if name in _MAGNITUDES and not parameter.minimum >= 0.0:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum of 0 or more")
             if max(abs(parameter.minimum), abs(parameter.maximum)) > LARGEST:
@@ -145,16 +186,40 @@ def _first_problem(error: ValidationError) -> str:
     return f"{place}: {message}" if place else message
 
 
-def _parameter(name: str, given: _Parameter) -> NominalParameter:
+def _parameter(name: str, given: _Parameter, sensor: Sensor) -> NominalParameter:
     unit, meaning = UNITS[name]
+    if name == "sensor_offset":
+        unit = SENSED[sensor]
     return NominalParameter(
-        name, given.nominal, meaning, unit, given.minimum, given.maximum, origin=given.origin, free=given.free
+        name,
+        given.nominal,
+        meaning,
+        unit,
+        given.minimum,
+        given.maximum,
+        origin=given.origin,
+        free=given.free,
+        fixed_by=given.fixed_by,
     )
 
 
-def _actuator(description: _Description) -> Actuator:
-    parameters = {name: _parameter(name, p) for name, p in description.parameters.items()}
+def _sensor_parameters(description: _Description) -> dict[str, _Parameter]:
+    """Scale and zero of a sensor that shows the truth, where it may be off and the description says nothing of it."""
+    if description.sensor not in _GIVEN:
+        return {}
     stops = description.stops
+    most = stops.upper - stops.lower if stops else FULL_TURN
+    origin = "a sensor that shows the truth"
+    return {
+        "sensor_scale": _Parameter(nominal=1.0, minimum=0.01, maximum=100.0, origin=origin),
+        "sensor_offset": _Parameter(nominal=0.0, minimum=-most, maximum=most, origin=origin),
+    }
+
+
+def _actuator(description: _Description) -> Actuator:
+    given = {**_sensor_parameters(description), **description.parameters}
+    parameters = {name: _parameter(name, p, description.sensor) for name, p in given.items()}
+    stops, winding = description.stops, description.winding
     return Actuator(
         printable(description.name),
         printable(description.title or description.name),
@@ -164,4 +229,8 @@ def _actuator(description: _Description) -> Actuator:
         stops.lower if stops else -math.inf,
         stops.upper if stops else math.inf,
         description.effects,
+        description.drive,
+        description.motion,
+        printable(description.joint),
+        Winding(winding.rated_current, winding.time_constant, printable(winding.origin)) if winding else None,
     )

@@ -151,7 +151,7 @@ def simulate_sequence(path: Path, model: Model, sequence: Sequence, rate: float,
     """Write the recording that a bench with the actuator of `model` would make."""
     if sequence.kind == "duty":
         made = synthetic_recording(model, sequence.time, sequence.values, noise, seed)
-        write_simulated(path, made.time, made.duty, made.measured, quantity=made.quantity)
+        write_simulated(path, made.time, made.command, made.measured, quantity=made.quantity)
         return
     changes = sequence.changes
     schedule = Schedule(changes.time, changes.values)

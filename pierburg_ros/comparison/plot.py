@@ -27,7 +27,7 @@ def title(comparison: Comparison) -> str:
 
 def duty_percent(comparison: Comparison) -> np.ndarray:
     """Duty [%] in force at each sample."""
-    return 100.0 * comparison.recording.duty.at(comparison.recording.time, before=0.0)
+    return 100.0 * comparison.recording.command.at(comparison.recording.time, before=0.0)
 
 
 def page(comparison: Comparison) -> go.Figure:

@@ -165,6 +165,13 @@ class NotTestable(Part):
     """What to record to see it."""
 
 
+class CannotAct(Part):
+    """An effect that the actuator cannot have, by its drive, load, sensor or stops."""
+
+    id: str
+    why: str
+
+
 class TorqueOverTime(Part):
     """The missing torque over the first recording."""
 
@@ -217,8 +224,8 @@ class Diagnosis(Part):
     """Version of this layout; the key is `schema`."""
     recordings: list[str]
     """Names of the recordings."""
-    quantity: Literal["hall_voltage", "position"]
-    unit: Literal["V", "rad"]
+    quantity: Literal["hall_voltage", "position", "speed"]
+    unit: str
     """Measured unit."""
     verdict: Verdict
     summary: str
@@ -233,6 +240,8 @@ class Diagnosis(Part):
     fit: FitQuality
     candidates: list[Candidate] = []
     not_testable: list[NotTestable] = []
+    cannot_act: list[CannotAct] = []
+    """Effects that were not tried, since an actuator of this kind cannot have them."""
     residual_torque: ResidualTorque | None = None
     """Only with the verdict "unexplained"."""
     data_quality: DataQuality

@@ -26,6 +26,7 @@ from pierburg_ros.effects import (
     viscous_friction,
 )
 from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.thermal_resistance import COPPER
 
 EFFECTS: tuple[Effect, ...] = (
     input_delay.EFFECT,
@@ -59,4 +60,4 @@ ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not Non
 STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
 """Dotted name of its step."""
 
-__all__ = ["DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]
+__all__ = ["COPPER", "DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]

@@ -20,6 +20,9 @@ SEEN = 1.0
 """Error of the angle, in noises of the sensor, that one unknown stretch of the input may cause without the simulation
 starting again after it. Derived: one noise of the sensor; more would be seen."""
 
+ALIKE = 0.05
+"""Differences of the length of unknown stretches that make none, as a share of the shortest. Work: each
+length is looked at by itself."""
 KNOWN = 1000
 """Moments at which the known duty is looked at. Derived: their median is known to 1.25 / sqrt(1000) = 4 %."""
 
@@ -45,9 +48,9 @@ def pieces(recording: Recording, model: Model) -> Pieces:
         return Pieces([recording], 0.0, ())
     per_radian = 1.0 / abs(angle_per_unit(model))
     starts, ends = (np.array([span[place] for span in unknown]) for place in (0, 1))
-    moved = _top_speed(model) * (ends - starts) * _doubt(recording.duty, starts, ends) * per_radian
+    moved = _top_speed(model) * (ends - starts) * _doubt(recording.command, starts, ends) * per_radian
     doubtful = moved > SEEN * noise_of(recording.time, recording.measured)
-    filled = replace(recording, duty=_halved(recording.duty, starts[~doubtful], ends[~doubtful]))
+    filled = replace(recording, command=_halved(recording.command, starts[~doubtful], ends[~doubtful]))
     left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
     remembered = min(_memory(model), recording.duration)
     added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration
@@ -74,7 +77,8 @@ def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:
     """
     step = np.abs(duty.at(ends, before=0.0) - duty.at(starts, before=0.0)) / math.sqrt(12.0)
     begins = np.linspace(duty.time[0], duty.time[-1], KNOWN)
-    lengths, place = np.unique(np.round(ends - starts, 4), return_inverse=True)
+    told = ALIKE * float(np.min(ends - starts))
+    lengths, place = np.unique(told * np.round((ends - starts) / told), return_inverse=True)
     wander = np.empty(lengths.size)
     for index, length in enumerate(lengths):
         inside = begins[:, None] + length * np.linspace(0.0, 1.0, 9)

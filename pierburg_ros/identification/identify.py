@@ -23,8 +23,9 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-HELD = ("supply_voltage", "spring_stiffness", "gravity_torque")
-"""Held unless freed: the supply can be measured, and duty and angle leave the scale of all torques open."""
+HELD = ("supply_voltage", "spring_stiffness", "gravity_torque", "torque_scale", "sensor_scale", "sensor_offset")
+"""Held unless freed: the supply can be measured, input and angle leave the scale of all torques open, and a sensor that
+is off would be mended by the load."""
 TRAINED_SHARE = 0.7
 """Share of a single recording that the validated fit sees. Given: the usual split, 70 to 30."""
 

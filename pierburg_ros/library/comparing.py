@@ -70,7 +70,7 @@ class Comparison(Result):
         return json.dumps(self.found.as_mapping(), indent=1, allow_nan=False) + "\n"
 
     def figure(self) -> go.Figure:
-        """Measured and simulated, residual, and duty over time, as a Plotly figure."""
+        """Measured and simulated, residual, and input over time, as a Plotly figure."""
         from pierburg_ros.comparison.plot import page
 
         return page(self.found)
@@ -82,16 +82,15 @@ class Comparison(Result):
         return picture(self.found)
 
     def table(self) -> pandas.DataFrame:
-        """One row a sample, columns as in replay.csv: time [s], duty [1], measured, simulated, residual."""
+        """One row a sample, columns as in replay.csv: time [s], the input, measured, simulated, residual."""
         return data_frame(self.columns())
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
-        """The columns of replay.csv, each of shape (samples,); the duty is the one in force."""
+        """The columns of replay.csv, each of shape (samples,); the input is the one in force."""
         recording = self.recording
-        duty = recording.duty.at(recording.time, before=0.0)
         return {
             "time": recording.time,
-            "duty": duty,
+            recording.input: recording.command.at(recording.time, before=0.0),
             "measured": recording.measured,
             "simulated": self.simulated,
             "residual": self.residual,
@@ -128,7 +127,7 @@ class Comparison(Result):
 
 
 def compare(recording: Readable, model: ModelLike) -> Comparison:
-    """`recording` beside what `model` would have measured under the same duty.
+    """`recording` beside what `model` would have measured under the same input.
 
     A recording or its path, a model or the path of its file. A recording that begins in motion is taken up where
     the shaft is first at rest. InputError where it cannot be read or the model cannot be simulated.
@@ -136,5 +135,6 @@ def compare(recording: Readable, model: ModelLike) -> Comparison:
         comparison = pr.compare("bench.mcap", pr.Model.nominal("pierburg"))
         print(comparison.rmse, comparison.noise)
     """
-    measured = recording if isinstance(recording, Recording) else read(recording)
-    return Comparison(comparison.compare(chosen_model(model), measured))
+    chosen = chosen_model(model)
+    measured = recording if isinstance(recording, Recording) else read(recording, actuator=chosen.actuator)
+    return Comparison(comparison.compare(chosen, measured))

@@ -131,5 +131,5 @@ def diagnose(
         diagnosis.save("results/diagnosis")
     """
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
-    measured = recordings_of(recordings)
+    measured = recordings_of(recordings, nominal.actuator)
     return Diagnosis(diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs))

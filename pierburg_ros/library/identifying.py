@@ -121,5 +121,7 @@ def identify(
         identification.save("results/identified")
     """
     start = chosen_model(model, actuator if actuator or model else "pierburg")
-    measured = [part for recording in recordings_of(recordings) for part in parts_of(recording, start)[0]]
+    measured = [
+        part for recording in recordings_of(recordings, start.actuator) for part in parts_of(recording, start)[0]
+    ]
     return Identification(identified(start, measured, free, fixed, jobs), tuple(measured))

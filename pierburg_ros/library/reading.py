@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import Recording, read_recording
 
@@ -13,25 +14,35 @@ Readable: TypeAlias = Recording | str | Path
 """A recording, or where one lies."""
 
 
-def read(path: str | Path, *, time: str | None = None, topics: Mapping[str, str] | None = None) -> Recording:
+def read(
+    path: str | Path,
+    *,
+    time: str | None = None,
+    topics: Mapping[str, str] | None = None,
+    signals: str | Path | None = None,
+    actuator: Actuator | None = None,
+) -> Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
-    A CSV has a header with `time` [s], `duty` [1, from -1 to 1] and `hall_voltage` [V] or `position` [rad].
-    `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock: stamp, clock, publish or
-    log. The result has `time` [s] and `measured` [V or rad], both of shape (samples,), and the channels that acted.
-    InputError says what is missing, and how to name it.
+    A CSV has a header with `time` [s], an input, `duty` [1, from -1 to 1], `current` [A] or `torque` [N.m], and
+    `hall_voltage` [V], `position` [rad] or `speed` [rad/s]. Where there are several, those of the `actuator` are
+    taken. `signals` is the path of a signal map, which says which topic and field, or which column, each signal comes
+    from, and in which unit. `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock:
+    stamp, clock, publish or log. The result has `time` [s] and `measured`, both of shape (samples,), the `command`
+    that drove the actuator and the other channels that acted. InputError says what is missing, and how to name it.
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
-    return read_recording(path, time=time, topics=topics)
+    preferred = () if actuator is None else (actuator.input, actuator.quantity)
+    return read_recording(path, time=time, topics=topics, signals=signals, preferred=preferred)
 
 
-def recordings_of(given: Readable | Sequence[Readable]) -> list[Recording]:
-    """One or more recordings as a list, those given by path read; InputError where there is none."""
+def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> list[Recording]:
+    """One or more recordings of an `actuator` as a list, those given by path read; InputError where there is none."""
     several = [given] if isinstance(given, (Recording, str, Path)) else list(given)
     if not several:
         raise InputError("There is no recording; expected one or more. Give recordings or their paths.")
-    return [each if isinstance(each, Recording) else read(each) for each in several]
+    return [each if isinstance(each, Recording) else read(each, actuator=actuator) for each in several]
 
 
 def taken_up(recording: Recording) -> str:

@@ -14,7 +14,7 @@ from pierburg_ros.recording import Recording
 def figure(recording: Recording, title: str) -> go.Figure:
     """Measured quantity and duty [%] over time [s], as a Plotly figure."""
     plot = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.7, 0.3], vertical_spacing=0.05)
-    duty = 100.0 * recording.duty.at(recording.time, before=0.0)
+    duty = 100.0 * recording.command.at(recording.time, before=0.0)
     for row, name, values, shape in ((1, "measured", recording.measured, "linear"), (2, "duty", duty, "hv")):
         line = {"color": COLOURS[name], "width": 1.5, "shape": shape}
         plot.add_trace(go.Scatter(x=recording.time, y=values, name=name, line=line), row=row, col=1)
@@ -31,7 +31,7 @@ def picture(recording: Recording, title: str) -> Figure:
     signal, duty = drawn.subplots(2, sharex=True, height_ratios=[7, 3])
     signal.set_title(title, fontsize=10)
     signal.plot(recording.time, recording.measured, color=COLOURS["measured"], linewidth=1.2)
-    percent = 100.0 * recording.duty.at(recording.time, before=0.0)
+    percent = 100.0 * recording.command.at(recording.time, before=0.0)
     duty.step(recording.time, percent, where="post", color=COLOURS["duty"], linewidth=0.8)
     signal.set_ylabel(LABELS[recording.quantity])
     duty.set_ylabel("duty [%]")

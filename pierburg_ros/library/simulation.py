@@ -88,7 +88,7 @@ class Simulation(Result):
     @property
     def duty(self) -> Signal:
         """Duty [1] in force at each time, shape (samples,)."""
-        return self.recording.duty.at(self.recording.time, before=0.0)
+        return self.recording.command.at(self.recording.time, before=0.0)
 
     @property
     def title(self) -> str:
@@ -194,14 +194,14 @@ def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling
         inputs, channel = Inputs(schedule.time, schedule.values), Channel(schedule.time, schedule.values)
         times = sampling.times(float(schedule.time[-1]) + AFTER_LAST)
     elif isinstance(duty, (str, Path, Recording)):
-        recorded = duty if isinstance(duty, Recording) else read(duty)
-        inputs, channel = inputs_of(recorded), recorded.duty
+        recorded = duty if isinstance(duty, Recording) else read(duty, actuator=model.actuator)
+        inputs, channel = inputs_of(recorded), recorded.command
         supply, enabled = recorded.supply_voltage, recorded.enabled
         times = sampling.times_like(recorded.time)
     else:
         when = changes(time)
         inputs = Inputs(when, np.asarray(duty, dtype=float))
-        channel = Channel(inputs.time, inputs.duty)
+        channel = Channel(inputs.time, inputs.command)
         times = sampling.times_like(when)
     measured = simulate_measurement(model, inputs, times, sampling.noise, sampling.seed, sampling.initial_angle)
     last = float(times[-1])

@@ -12,6 +12,7 @@ from pierburg_ros.plant.torques import sensor
 def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> NDArray[np.float64]:
     """Angle [rad] that each of the `measured` values shows, same shape; `quantity`: what they are, if not the model's.
 
+    Of a speed sensor it is the velocity [rad/s].
     Play and lag of the sensor are not undone: they depend on what was before.
     """
     record, is_angle = model.record()[0], _is_angle(model, quantity)
@@ -20,14 +21,18 @@ def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> N
 
 
 def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:
-    """Change of the measured value per rad at `angle` [rad]."""
+    """Change of the measured value per rad at `angle` [rad]; of a speed sensor per rad/s."""
     return float(sensor.sensitivity(model.record()[0], angle, _is_angle(model, quantity)))
 
 
 def angle_per_unit(model: Model) -> float:
-    """Angle [rad] that one unit of the measured quantity stands for, on average over the span."""
-    return 1.0 if _is_angle(model, None) else 1.0 / float(sensor.per_radian(model.record()[0]))
+    """Angle [rad] that one unit of the measured quantity stands for, on average over the span.
+
+    Of a speed sensor it is the velocity [rad/s].
+    """
+    record = model.record()[0]
+    return 1.0 / float(record["sensor_scale"] if _is_angle(model, None) else sensor.per_radian(record))
 
 
 def _is_angle(model: Model, quantity: str | None) -> bool:
-    return (quantity or model.actuator.quantity) == "position"
+    return (quantity or model.actuator.quantity) != "hall_voltage"

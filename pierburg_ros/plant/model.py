@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
+from pierburg_ros.effects.effect import DRIVES, SENSORS
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant.parameters import BASE, RESIDUAL_NODES, pack
+from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_NODES, pack
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
 """Parameters of effects that keep above or below a base parameter."""
@@ -74,6 +75,11 @@ class Model:
         declared = DECLARED[name]
         return min(declared.minimum, 0.0), declared.maximum
 
+    @cached_property
+    def scales(self) -> Scales:
+        """What is large for the actuator as described."""
+        return Scales.of(self.actuator)
+
     def record(self) -> np.ndarray:
         """The parameter record that the kernels read, shape (1,); one record for all runs of a model."""
         return self._packed
@@ -81,8 +87,9 @@ class Model:
     @cached_property
     def _packed(self) -> np.ndarray:
         a = self.actuator
-        values = {**dict.fromkeys(BASE, 0.0), **self.values}
-        return pack(values, a.lower_stop, a.upper_stop, a.quantity == "position", self.residual_torque)
+        values = {**NEUTRAL, **self.values}
+        kinds = DRIVES.index(a.drive), SENSORS.index(a.quantity)
+        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.scales, self.residual_torque)
 
     def _check(self, name: str, value: float) -> None:
         minimum, maximum = self.range(name)
@@ -105,6 +112,9 @@ class Model:
                 raise InputError(
                     f"{name} is {value:g}; expected less than {declared.below}, {self.values[declared.below]:g}."
                 )
+        for effect in self.active_effects:
+            if obstacle := self.actuator.obstacle(EFFECT[effect]):
+                raise InputError(f"{effect} cannot act in actuator {self.actuator.name}: {obstacle}. Leave it out.")
         ends = [self.values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
         if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
             raise InputError(

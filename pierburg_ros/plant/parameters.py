@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.actuators import Scales
 from pierburg_ros.effects import EFFECTS, Effect
 
 RESIDUAL_NODES = 24
 """Most nodes an axis of the residual torque may have."""
 
+FACTORS = ("armature_resistance", "torque_constant", "gear_ratio", "torque_scale", "sensor_scale")
+"""Base parameters that multiply or divide."""
 BASE = (
     "armature_resistance",
     "torque_constant",
@@ -26,8 +29,13 @@ BASE = (
     "supply_voltage",
     "hall_voltage_closed",
     "hall_voltage_open",
+    "torque_scale",
+    "sensor_scale",
+    "sensor_offset",
 )
 """Names of the base parameters, units as in the actuator description."""
+NEUTRAL = {**dict.fromkeys(BASE, 0.0), **dict.fromkeys(FACTORS, 1.0)}
+"""Value of each base parameter in an actuator that has none: it then changes nothing."""
 
 RESIDUAL = np.dtype(
     [
@@ -39,10 +47,14 @@ RESIDUAL = np.dtype(
     ]
 )
 
+OWN = np.dtype([("torque", np.float64), ("angle", np.float64), ("time", np.float64)])
+"""What is large for the actuator [N.m, rad, s]: the tolerances of the kernels are shares of these."""
+
 PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
-    + [("serial", np.int64), ("finest", np.float64), ("measures_position", np.bool_)]
+    + [("drive", np.int64), ("sensor", np.int64), ("sensor_span", np.float64)]
+    + [("own", OWN), ("serial", np.int64), ("finest", np.float64)]
     + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
@@ -58,11 +70,16 @@ def pack(
     values: Mapping[str, float],
     lower_stop: float,
     upper_stop: float,
-    measures_position: bool,
+    drive: int,
+    sensor: int,
+    sensor_span: float,
+    scales: Scales,
     residual: Mapping[str, Any] | None = None,
 ) -> np.ndarray:
     """Parameter record, shape (1,), from flat dotted names.
 
+    `drive` and `sensor` are the places of their kinds in `DRIVES` and `SENSORS`, `sensor_span` [rad] is the angle
+    between the two Hall end voltages.
     `plain` says that torques are straight lines of angle and velocity between events, `linear` that nothing but angle
     and velocity has a memory besides, `finest` [rad] over which travel torques may bend. `creeps` says that states of
     drive or sensor change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from
@@ -74,7 +91,8 @@ def pack(
     for effect in EFFECTS:
         record[effect.id] = tuple(values[f"{effect.id}.{name}"] for name in effect.names)
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
-    record["measures_position"] = measures_position
+    record["drive"], record["sensor"], record["sensor_span"] = drive, sensor, sensor_span
+    record["own"] = scales.torque, scales.angle, scales.time
     _pack_residual(record, residual)
     present = [effect for effect in EFFECTS if effect.acts(values)]
     creeping = {effect.stage for effect in present if effect.state and effect.stage in _OUTSIDE}

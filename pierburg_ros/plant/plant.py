@@ -37,13 +37,15 @@ class Plant:
         self._state = new_state(self._record, angle)
         self._random = np.random.default_rng(self._seed)
 
-    def advance(self, duty: float, duration: float, supply_voltage: float | None = None, enabled: bool = True) -> None:
-        """Let `duty` act for `duration` [s]."""
+    def advance(
+        self, command: float, duration: float, supply_voltage: float | None = None, enabled: bool = True
+    ) -> None:
+        """Let `command` act for `duration` [s]."""
         supply = math.nan if supply_voltage is None else supply_voltage
-        advance(self._record[0], self._state[0], duty, supply, enabled, duration)
+        advance(self._record[0], self._state[0], command, supply, enabled, duration)
 
     def measure(self) -> float:
-        """One sample of the sensor, noise and converter included (V, or rad where the angle is measured)."""
+        """One sample of the sensor, noise and converter included (V, rad or rad/s)."""
         value = measured(self._record[0], self._state[0]) + self.noise * self._random.standard_normal()
         return float(quantised(self._record[0], value))
 

@@ -1,4 +1,4 @@
-"""The signal path of the plant, top to bottom: duty in, delay, drive, mechanics, heat, sensor."""
+"""The signal path of the plant, top to bottom: command in, delay, drive, mechanics, heat, sensor."""
 
 from __future__ import annotations
 
@@ -12,38 +12,39 @@ from pierburg_ros.plant.motion import steady
 from pierburg_ros.plant.state import QUEUE
 from pierburg_ros.plant.torques import drive, sensor
 
-LONGEST = 0.002
-"""Longest stretch [s] over which duty in force and resistance stay, and the shaft's velocity for the sensor's lag."""
+LONGEST = 0.021
+"""Longest stretch over which input in force and resistance stay, and the shaft's velocity for the sensor's lag, as a
+share of the actuator's own time; 2 ms for the valve."""
 FORGOTTEN = 20.0
-"""Time constants of the winding after which its current has forgotten the duty before, to rounding."""
+"""Time constants of the winding after which its current has forgotten the command before, to rounding."""
 EVENTS = 20_000
 """More events than this in one interval mean that a parameter set cannot be simulated."""
-SUSTAINED = 1e6
-"""Events a second of simulated time that may go on: an event takes up to a microsecond, so that no run takes much
-longer than the motion itself. The nominal valve has about 2,000."""
+SUSTAINED = 1e5
+"""Events in the actuator's own time that may go on: an event takes up to a microsecond, so that no run takes much
+longer than the motion of the valve itself, which has about 200."""
 BURST = 50 * EVENTS
 """Events beyond those, as at an impact: about a second of computing."""
 
 
 @kernel
-def advance(p, s, duty, supply_voltage, closed_bridge, duration):
-    """Let `duty` act for `duration` [s]; `supply_voltage` [V] not a number means the nominal one.
+def advance(p, s, command, supply_voltage, closed_bridge, duration):
+    """Let `command` act for `duration` [s]; `supply_voltage` [V] not a number means the nominal one.
 
     Changes the state record `s`. A state that is not finite afterwards says that the parameters cannot be
     simulated; validate before.
     """
     supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
-    if steady.goes_on(p, s, duty, supply, closed_bridge, duration):
+    if steady.goes_on(p, s, command, supply, closed_bridge, duration):
         s.time += duration
     else:
-        _proceed(p, s, duty, supply, closed_bridge, duration)
+        _proceed(p, s, command, supply, closed_bridge, duration)
 
 
 @kernel
-def recall(p, s, times, duty, supply_voltage, closed_bridge):
-    """Let what was commanded before the present time of `s` be under way: `duty` since each of `times` [s].
+def recall(p, s, times, command, supply_voltage, closed_bridge):
+    """Let what was commanded before the present time of `s` be under way: `command` since each of `times` [s].
 
-    `supply_voltage` [V] and `closed_bridge` are the present ones. A delayed duty goes on arriving, and behind an
+    `supply_voltage` [V] and `closed_bridge` are the present ones. A delayed command goes on arriving, and behind an
     inductance those that have arrived have driven their current, at the motor's present velocity.
     """
     supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
@@ -54,34 +55,34 @@ def recall(p, s, times, duty, supply_voltage, closed_bridge):
         first -= 1
     for index in range(max(first, 0), arrived + 1):
         until = times[index + 1] + p.input_delay.delay if index < arrived else s.time
-        s.arrived = duty[index]
-        drive.switch(p, s, duty[index], supply, closed_bridge)
+        s.arrived = command[index]
+        drive.switch(p, s, command[index], supply, closed_bridge)
         if remembered > 0.0:
             s.current = drive.relaxed_current(p, s, until - times[index] - p.input_delay.delay)
     if remembered > 0.0:
         s.current -= s.braking * s.motor_velocity / (p.gear_ratio * p.torque_constant)
     for sent in range(arrived + 1, times.size):
-        _enqueue(s, times[sent] + p.input_delay.delay, duty[sent])
+        _enqueue(s, times[sent] + p.input_delay.delay, command[sent])
 
 
 @kernel
-def _proceed(p, s, duty, supply, closed_bridge, duration):
-    """Let `duty` act at once, or late."""
+def _proceed(p, s, command, supply, closed_bridge, duration):
+    """Let `command` act at once, or late."""
     if p.input_delay.delay == 0.0 and s.waiting == 0:
-        _act(p, s, duty, supply, closed_bridge, duration)
+        _act(p, s, command, supply, closed_bridge, duration)
     else:
-        _act_late(p, s, duty, supply, closed_bridge, duration)
+        _act_late(p, s, command, supply, closed_bridge, duration)
 
 
 @kernel
-def _act_late(p, s, duty, supply, closed_bridge, duration):
-    """Put `duty` under way and let those that arrive act, for `duration` [s]."""
-    _enqueue(s, s.time + p.input_delay.delay, duty)
+def _act_late(p, s, command, supply, closed_bridge, duration):
+    """Put `command` under way and let those that arrive act, for `duration` [s]."""
+    _enqueue(s, s.time + p.input_delay.delay, command)
     end = s.time + duration
     in_force = s.arrived
     while s.time < end:
         while s.waiting > 0 and s.queue_time[s.first] <= s.time:
-            in_force = s.queue_duty[s.first]
+            in_force = s.queue_command[s.first]
             s.first = (s.first + 1) % QUEUE
             s.waiting -= 1
         until = min(end, s.queue_time[s.first]) if s.waiting > 0 else end
@@ -90,30 +91,30 @@ def _act_late(p, s, duty, supply, closed_bridge, duration):
 
 
 @kernel
-def _enqueue(s, time, duty):
-    """Put a change of duty under way; in a full queue the newest is replaced."""
-    newest = s.queue_duty[(s.first + s.waiting - 1) % QUEUE] if s.waiting > 0 else s.arrived
-    if duty == newest:
+def _enqueue(s, time, command):
+    """Put a change of command under way; in a full queue the newest is replaced."""
+    newest = s.queue_command[(s.first + s.waiting - 1) % QUEUE] if s.waiting > 0 else s.arrived
+    if command == newest:
         return
     if s.waiting < QUEUE:
         s.waiting += 1
     last = (s.first + s.waiting - 1) % QUEUE
-    s.queue_time[last], s.queue_duty[last] = time, duty
+    s.queue_time[last], s.queue_command[last] = time, command
 
 
 @kernel
-def _act(p, s, duty, supply, closed_bridge, duration):
-    """One duty, arrived at the driver, for `duration` [s]."""
-    s.arrived = duty
+def _act(p, s, command, supply, closed_bridge, duration):
+    """One command, arrived at the driver, for `duration` [s]."""
+    s.arrived = command
     if math.isnan(s.angle):
         s.time += duration
         return
     stretches = 1
     if p.creeps:
-        stretches = max(math.ceil(duration / LONGEST - 1e-6), 1)
+        stretches = max(math.ceil(duration / (LONGEST * p.own.time) - 1e-6), 1)
     stretch = duration / stretches
     for _ in range(stretches):
-        in_force = duty
+        in_force = command
         drive.switch(p, s, in_force, supply, closed_bridge)
         _mechanics(p, s, stretch)
 
@@ -139,7 +140,7 @@ def _mechanics(p, s, duration):
             drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
         remaining -= used
         if not remaining > 0.0:
-            s.events = max(s.events + event - SUSTAINED * duration, 0.0)
+            s.events = max(s.events + event - SUSTAINED * duration / p.own.time, 0.0)
             s.time = end
             return
     s.angle = s.velocity = math.nan

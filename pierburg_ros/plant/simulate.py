@@ -14,31 +14,32 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import new_state
+from pierburg_ros.plant.state import STATE, new_state, place
 from pierburg_ros.plant.torques.sensor import measured, quantised
 from pierburg_ros.workers import workers
 
-LONG_BEFORE = 10.0
-"""Time [s] after which neither a delayed duty nor a current is still on its way."""
+LONG_BEFORE = 1e9
+"""Time [s] after which neither a delayed command nor a current is still on its way: longer than any accepted one."""
 
 
 @dataclass(frozen=True)
 class Inputs:
     """What drives the plant: each row holds from its time until the next one.
 
-    time [s], shape (changes,), increasing; duty in [-1, 1]; supply_voltage [V] or None for the model's;
-    enabled, or None for always. Before the first row duty is 0.
+    time [s], shape (changes,), increasing; the command is a duty in [-1, 1], a current [A] or a torque [N.m], as the
+    actuator's drive asks; supply_voltage [V] or None for the model's; enabled, or None for always. Before the first row
+    the command is 0.
     """
 
     time: Signal
-    duty: Signal
+    command: Signal
     supply_voltage: Signal | None = None
     enabled: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         time = np.ascontiguousarray(self.time, dtype=float)
         object.__setattr__(self, "time", time)
-        for name, kind in (("duty", float), ("supply_voltage", float), ("enabled", bool)):
+        for name, kind in (("command", float), ("supply_voltage", float), ("enabled", bool)):
             values = getattr(self, name)
             if values is not None:
                 object.__setattr__(self, name, np.ascontiguousarray(values, dtype=kind))
@@ -47,8 +48,8 @@ class Inputs:
                         f"The input has {time.size} times and {np.size(values)} values of {name}; "
                         "expected one each. Give arrays of the same length."
                     )
-        if not np.all(np.isfinite(self.duty)):
-            raise InputError("The duty is not finite throughout; expected numbers in [-1, 1]. Remove what is missing.")
+        if not np.all(np.isfinite(self.command)):
+            raise InputError("The command is not finite throughout; expected finite numbers. Remove what is missing.")
         if time.size == 0 or not np.all(np.isfinite(time)) or not np.all(np.diff(time) > 0):
             raise InputError("The input times are empty or do not increase; expected increasing times. Sort them.")
 
@@ -67,8 +68,8 @@ def simulate(
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
     No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s]; loads go by
-    the time of the samples, and duty from before the first one is under way. Not a number from where a parameter set
-    cannot be simulated.
+    the time of the samples, and a command from before the first one is under way. Not a number from where a parameter
+    set cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
@@ -127,6 +128,20 @@ def simulate_many(
     return output
 
 
+def simulate_stretches(
+    model: Model, inputs: Inputs, sample_times: ArrayLike, first: NDArray[np.int64], angle: Signal, velocity: Signal
+) -> Signal:
+    """`simulate` in stretches that begin at the samples `first`, each at its own angle [rad] and velocity [rad/s].
+
+    `first`, `angle` and `velocity` are of shape (stretches,).
+    """
+    times = _increasing(sample_times)
+    output = np.empty(times.size)
+    states = np.zeros(first.size, STATE)
+    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, output)
+    return output
+
+
 def _run_into(
     output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
 ) -> None:
@@ -148,7 +163,7 @@ def _continue_into(output: Signal, model: Model, state: np.ndarray, inputs: Inpu
 def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]:
     supply = inputs.supply_voltage if inputs.supply_voltage is not None else _NOTHING
     enabled = inputs.enabled if inputs.enabled is not None else _ALWAYS
-    return inputs.time, inputs.duty, supply, enabled
+    return inputs.time, inputs.command, supply, enabled
 
 
 def _increasing(sample_times: ArrayLike) -> Signal:
@@ -163,18 +178,31 @@ _ALWAYS = np.empty(0, dtype=bool)
 
 
 @kernel
-def begin(p, s, input_times, duty, supply_voltage, enabled, time):
+def begin(p, s, input_times, command, supply_voltage, enabled, time):
     """Begin at `time` [s], with the inputs from before it under way."""
     s.time = time
     earlier = np.searchsorted(input_times, time)
     if earlier > 0:
         supply = supply_voltage[earlier - 1] if supply_voltage.size > 0 else np.nan
         closed = enabled[earlier - 1] if enabled.size > 0 else True
-        recall(p, s, input_times[:earlier], duty[:earlier], supply, closed)
+        recall(p, s, input_times[:earlier], command[:earlier], supply, closed)
 
 
 @kernel
-def run(p, s, input_times, duty, supply_voltage, enabled, sample_times, output):
+def run_stretches(
+    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, output
+):
+    """`run` from each of the samples `first` to the next, at its own angle and velocity; `states` are all zeros."""
+    for stretch in range(first.size):
+        end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
+        times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
+        place(p, states[stretch], angle[stretch], velocity[stretch])
+        begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
+        run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
+
+
+@kernel
+def run(p, s, input_times, command, supply_voltage, enabled, sample_times, output):
     """Sample the plant at `sample_times` [s] into `output` while the inputs drive it; NaN from where it fails."""
     changes = input_times.size
     now = sample_times[0]
@@ -185,7 +213,7 @@ def run(p, s, input_times, duty, supply_voltage, enabled, sample_times, output):
             until = goal
             if index + 1 < changes and input_times[index + 1] < goal:
                 until = input_times[index + 1]
-            in_force = duty[index] if index >= 0 else 0.0
+            in_force = command[index] if index >= 0 else 0.0
             supply = supply_voltage[index] if supply_voltage.size > 0 and index >= 0 else np.nan
             closed = enabled[index] if enabled.size > 0 and index >= 0 else True
             advance(p, s, in_force, supply, closed, until - now)

@@ -9,9 +9,10 @@ import numpy as np
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import level
+from pierburg_ros.plant.torques.sensor import sensed
 
 QUEUE = 1024
-"""Duty changes that may be under way at once when the input is delayed."""
+"""Changes of the command that may be under way at once when the input is delayed."""
 
 PIECE = np.dtype(
     [
@@ -41,8 +42,8 @@ STATE = np.dtype(
         ("motor_direction", np.float64),
         ("flank", np.int64),  # touching: +1 the opening one, -1 the closing one, 0 none
         ("current", np.float64),  # A
-        ("arrived", np.float64),  # duty that has arrived at the driver
-        ("duty", np.float64),  # in force at the motor, before the dead band
+        ("arrived", np.float64),  # command that has arrived at the driver
+        ("command", np.float64),  # in force at the motor, before the dead band
         ("supply", np.float64),  # V
         ("closed_bridge", np.bool_),
         ("serial", np.int64),  # of the parameters last used
@@ -55,10 +56,10 @@ STATE = np.dtype(
         ("step", np.float64),  # s, internal step that was last accepted
         ("events", np.float64),  # of late, beyond those that may go on
         ("piece", PIECE),  # the linear piece last computed
-        ("waiting", np.int64),  # duty changes under way
+        ("waiting", np.int64),  # changes under way
         ("first", np.int64),
         ("queue_time", np.float64, (QUEUE,)),  # s
-        ("queue_duty", np.float64, (QUEUE,)),
+        ("queue_command", np.float64, (QUEUE,)),
         *_REMEMBERED,
     ],
     align=True,
@@ -82,13 +83,13 @@ def place(p, s, angle, velocity):
     if p.stop_compliance.stiffness == 0.0:
         angle = min(max(angle, p.lower_stop), p.upper_stop)
     s.angle = s.motor_angle = angle
-    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = s.sensor_lag.lagged = angle
     s.velocity = s.motor_velocity = velocity
+    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = s.sensor_lag.lagged = sensed(p, s)
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1
     s.supply = np.nan
     s.closed_bridge = True
-    s.step = 1.0
+    s.step = math.inf
     if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
         s.presliding.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
     s.presliding.motor_bristle = s.presliding.bristle

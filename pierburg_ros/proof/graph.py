@@ -119,6 +119,6 @@ def recorded(path: Path) -> float:
 def read_back(trial: Trial, path: Path) -> Recorded:
     """The recording on its sample times, with what the textbook valve does under the applied duty."""
     recording = read_recording(path)
-    duty: Signal = recording.duty.at(recording.time, before=0.0)
-    ideal = simulate_textbook(trial.values, recording.duty.time, recording.duty.values, recording.time)
+    duty: Signal = recording.command.at(recording.time, before=0.0)
+    ideal = simulate_textbook(trial.values, recording.command.time, recording.command.values, recording.time)
     return Recorded(recording.time, duty, recording.measured, ideal, None)

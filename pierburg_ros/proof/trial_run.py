@@ -101,7 +101,7 @@ def judge(folder: Path) -> Score:
 def effect_signal(label: Mapping[str, Any], folder: Path) -> tuple[Signal, Signal]:
     """Time [s] and what the concealed effect adds to the Hall voltage [V], drift being in both."""
     recording = read_recording(folder / "train.mcap")
-    duty = recording.duty.at(recording.time, before=0.0)
+    duty = recording.command.at(recording.time, before=0.0)
     effects, drifted = concealed_values(label)
     with_effect, without = (
         simulate_textbook(values, recording.time, duty) for values in ({**drifted, **effects}, drifted)

@@ -113,17 +113,17 @@ def within(losses: tuple[Loss, ...], start: float, end: float) -> tuple[Loss, ..
     return tuple(found)
 
 
-def sentence(losses: tuple[Loss, ...], unknown: tuple[Span, ...]) -> str:
+def sentence(losses: tuple[Loss, ...], name: str, unknown: tuple[Span, ...]) -> str:
     """What to say first of a recording that is not whole; nothing of one that is.
 
-    `unknown` are the spans [s] without a known input.
+    `unknown` are the spans [s] in which the input of this `name` is not known.
     """
     if not losses:
         return ""
     missing = ", ".join(str(loss) for loss in losses)
     longest = max((end - start for start, end in unknown), default=0.0)
     without = (
-        f" The duty is unknown in {len(unknown)} stretches, {sum(end - start for start, end in unknown):.3g} s"
+        f" The {name} is unknown in {len(unknown)} stretches, {sum(end - start for start, end in unknown):.3g} s"
         f" together, the longest {longest:.3g} s."
         if unknown
         else ""

@@ -11,7 +11,10 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.recording.loss import Loss, Span, merged, sentence, within
 
 Samples = NDArray[np.float64]
-UNITS = {"hall_voltage": "V", "position": "rad"}
+UNITS = {"hall_voltage": "V", "position": "rad", "speed": "rad/s"}
+"""Unit of each quantity that may be measured, of a rotary actuator."""
+INPUTS = {"duty": "1", "current": "A", "torque": "N.m"}
+"""Unit of each input that may drive a rotary actuator."""
 
 
 @dataclass(frozen=True)
@@ -43,30 +46,34 @@ class Channel:
 class Recording:
     """Measured samples of the shaft and the signals that acted on it.
 
-    `time` [s] counts from the first sample that was measured, shape (samples,); `measured` is Hall voltage [V] or
-    position [rad]. The channels are signed duty [1], supply voltage [V], temperature [degC], bridge enabled
-    [0 or 1] and setpoints [rad]; what was recorded before the first sample has a negative time. `time_source`
-    says which clock the times come from. A sample that was sent again, with the same time and value as in lockstep
-    without a reply, counts once. `losses` tells of messages that are known to be missing.
+    `time` [s] counts from the first sample that was measured, shape (samples,); `measured` is the `quantity`: Hall
+    voltage [V], position [rad] or speed [rad/s]. The channels are the `command`, which is what `input` says, signed
+    duty [1], current [A] or torque [N.m]; supply voltage [V], temperature [degC], bridge enabled [0 or 1] and
+    setpoints [rad]. What was recorded before the first sample has a negative time. Of a linear actuator all of them
+    are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
+    time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing.
     """
 
     name: str
     quantity: str
     time: Samples
     measured: Samples
-    duty: Channel
+    command: Channel
     supply_voltage: Channel | None = None
     temperature: Channel | None = None
     enabled: Channel | None = None
     setpoints: Channel | None = None
     time_source: str = "stamp"
     losses: tuple[Loss, ...] = ()
+    input: str = "duty"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
         object.__setattr__(self, "measured", np.asarray(self.measured, dtype=np.float64))
         if self.quantity not in UNITS:
             raise InputError(f"{self.name}: found quantity {self.quantity!r}, expected one of {', '.join(UNITS)}.")
+        if self.input not in INPUTS:
+            raise InputError(f"{self.name}: found input {self.input!r}, expected one of {', '.join(INPUTS)}.")
         check_signal(f"{self.name}: {self.quantity}", self.time, self.measured)
         self._drop_repeats()
         if self.time.size < 2 or self.time[-1] <= 0:
@@ -74,8 +81,8 @@ class Recording:
                 f"{self.name} spans no time ({self.time.size} samples of {self.quantity}), expected two"
                 " samples or more at different times. Record longer."
             )
-        largest = float(np.max(np.abs(self.duty.values)))
-        if largest > 1.0 + 1e-9:
+        largest = float(np.max(np.abs(self.command.values)))
+        if self.input == "duty" and largest > 1.0 + 1e-9:
             raise InputError(
                 f"{self.name}: found a duty of magnitude {largest:g}, expected a fraction within [-1, 1]."
                 " Divide percentages by 100, and record the duty that was applied."
@@ -95,7 +102,7 @@ class Recording:
 
     @property
     def unit(self) -> str:
-        """Unit of the measured quantity, V or rad."""
+        """Unit of the measured quantity of a rotary actuator."""
         return UNITS[self.quantity]
 
     @property
@@ -105,8 +112,8 @@ class Recording:
 
     @property
     def unknown_input(self) -> tuple[Span, ...]:
-        """Spans [s] in which the duty is not known, because messages are missing; in order, without overlap."""
-        return merged(tuple(span for loss in self.losses if loss.signal == "duty" for span in loss.spans))
+        """Spans [s] in which the input is not known, because messages are missing; in order, without overlap."""
+        return merged(tuple(span for loss in self.losses if loss.signal == self.input for span in loss.spans))
 
     @property
     def missing_samples(self) -> tuple[Span, ...]:
@@ -116,7 +123,7 @@ class Recording:
     @property
     def warning(self) -> str:
         """What to say first of this recording if messages are missing, or nothing."""
-        return sentence(self.losses, self.unknown_input)
+        return sentence(self.losses, self.input, self.unknown_input)
 
     def select(self, start: float, end: float) -> Recording:
         """The samples within [start, end] [s] and what acts on them; times count from the first of them."""
@@ -124,7 +131,7 @@ class Recording:
         if np.count_nonzero(inside) < 2:
             raise InputError(f"{self.name} has no two samples from {start:g} to {end:g} s. Choose a longer window.")
         origin, last = self.time[inside][0], self.time[inside][-1]
-        duty = self.duty.select(origin, last) or Channel(np.zeros(1), np.zeros(1))
+        command = self.command.select(origin, last) or Channel(np.zeros(1), np.zeros(1))
         others = {
             role: channel.select(origin, last)
             for role in ("supply_voltage", "temperature", "enabled", "setpoints")
@@ -132,7 +139,7 @@ class Recording:
         }
         time, measured = self.time[inside] - origin, self.measured[inside]
         losses = within(self.losses, float(origin), float(last))
-        return replace(self, time=time, measured=measured, duty=duty, losses=losses, **others)
+        return replace(self, time=time, measured=measured, command=command, losses=losses, **others)
 
 
 def check_signal(what: str, time: Samples, values: Samples) -> None:

@@ -16,10 +16,16 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.mcap_writer import TYPES, McapWriter, bag_metadata
 from pierburg_ros.recording.formats.messages import Integers
-from pierburg_ros.recording.recording import UNITS, Channel
+from pierburg_ros.recording.recording import INPUTS, UNITS, Channel
 
 Signal = tuple[str, ArrayLike, ArrayLike]
 """Message type, times [s] and values; values of sensor_msgs/msg/JointState are shaft positions [rad]."""
+MEASURED = {
+    "hall_voltage": ("/hall_voltage", cdr.FLOAT64),
+    "position": ("/joint_states", cdr.JOINT_STATE),
+    "speed": ("/speed", cdr.FLOAT64),
+}
+"""Topic and message type of each measured quantity."""
 
 
 def write_recording(path: str | Path, signals: Mapping[str, Signal], *, as_directory: bool = False) -> None:
@@ -51,25 +57,28 @@ def write_recording(path: str | Path, signals: Mapping[str, Signal], *, as_direc
 def write_simulated(
     path: str | Path,
     time: ArrayLike,
-    duty: ArrayLike | Channel,
+    command: ArrayLike | Channel,
     measured: ArrayLike,
     setpoints: Channel | None = None,
     quantity: str = "hall_voltage",
+    driven_by: str = "duty",
 ) -> None:
     """Write a simulated run to the MCAP file `path`.
 
-    `measured` is Hall voltage [V] or position [rad] at `time` [s]; `duty` [1] has one value for each time, in
-    force until the next, or is a channel with times of its own; `setpoints` [rad].
+    `measured` is Hall voltage [V], position [rad] or speed [rad/s] at `time` [s]; the `command` is a duty [1], current
+    [A] or torque [N.m] as `driven_by` says and has one value for each time, in force until the next, or is a channel
+    with times of its own; `setpoints` [rad].
     """
-    if quantity not in UNITS:
-        raise InputError(f"found quantity {quantity!r}, expected one of {', '.join(UNITS)}.")
-    topic, kind = ("/hall_voltage", cdr.FLOAT64) if quantity == "hall_voltage" else ("/joint_states", cdr.JOINT_STATE)
-    inputs = duty if isinstance(duty, Channel) else Channel(np.asarray(time), np.asarray(duty))
+    for what, name, known in (("quantity", quantity, UNITS), ("input", driven_by, INPUTS)):
+        if name not in known:
+            raise InputError(f"found {what} {name!r}, expected one of {', '.join(known)}.")
+    topic, kind = MEASURED[quantity]
+    inputs = command if isinstance(command, Channel) else Channel(np.asarray(time), np.asarray(command))
     signals: dict[str, Signal] = (
         {} if setpoints is None else {"/setpoints": (cdr.FLOAT64, setpoints.time, setpoints.values)}
     )
     signals[topic] = (kind, time, measured)
-    signals["/duty"] = (cdr.FLOAT64, inputs.time, inputs.values)
+    signals[f"/{driven_by}"] = (cdr.FLOAT64, inputs.time, inputs.values)
     write_recording(path, signals)
 
 

@@ -20,7 +20,7 @@ def test_a_duty_recipe_writes_its_sequence_and_recording(tmp_path):
     recording = read_recording(tmp_path / "steps.mcap")
     assert schedule.time[-1] == pytest.approx(12.0)
     assert recording.duration == pytest.approx(12.0)
-    assert recording.duty.at(np.array([7.0]))[0] == pytest.approx(schedule.at(7.0), abs=1e-6)
+    assert recording.command.at(np.array([7.0]))[0] == pytest.approx(schedule.at(7.0), abs=1e-6)
 
 
 def test_the_same_seed_gives_the_same_recording(tmp_path):

@@ -19,7 +19,7 @@ def recorded(tmp_path_factory):
     time = np.arange(10_000) / 500.0
     made = synthetic_recording(model, time, duty_sequence("rich", model, time), seed=7)
     path = tmp_path_factory.mktemp("recorded") / "run.mcap"
-    write_simulated(path, made.time, made.duty, made.measured)
+    write_simulated(path, made.time, made.command, made.measured)
     return path
 
 

@@ -89,7 +89,7 @@ def test_a_model_file_is_taken(at_rest, tmp_path):
 def test_signals_are_named_by_option(at_rest, tmp_path):
     recording = read_recording(at_rest)
     path = tmp_path / "bench.mcap"
-    duty, hall = (recording.duty.time, recording.duty.values), (recording.time, recording.measured)
+    duty, hall = (recording.command.time, recording.command.values), (recording.time, recording.measured)
     write_recording(path, {"/pwm": ("std_msgs/msg/Float64", *duty), "/angle": ("std_msgs/msg/Float64", *hall)})
     named = ("--topic", "duty=/pwm", "--topic", "hall_voltage=/angle", "--time", "log")
     assert replay(path, "--actuator", "pierburg", "--output", tmp_path / "out", *named) == 0

@@ -103,7 +103,7 @@ def test_a_parameter_file_sets_the_controller(setpoints, tmp_path):
     off.write_text("controller: {ros__parameters: {duty_maximum: 0.0}}")
     options = ("--controller", off, "--output", tmp_path / "out")
     run("--actuator", "pierburg", "--setpoints", setpoints, *options)
-    assert np.all(read_recording(tmp_path / "out/simulated.mcap").duty.values <= 0.0)
+    assert np.all(read_recording(tmp_path / "out/simulated.mcap").command.values <= 0.0)
 
 
 @pytest.mark.parametrize(

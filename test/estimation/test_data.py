@@ -64,7 +64,7 @@ def test_a_first_part_is_the_same_recording_cut_short() -> None:
 
 def test_recordings_of_two_quantities_are_refused() -> None:
     volts = recording({}, duration=5.0)
-    angle = Recording("bench", "position", volts.time, (volts.measured - 0.42) / 4.1 * np.pi / 2, volts.duty)
+    angle = Recording("bench", "position", volts.time, (volts.measured - 0.42) / 4.1 * np.pi / 2, volts.command)
     with pytest.raises(InputError, match="hold Hall voltage and position; expected one quantity"):
         data_of([volts, angle], NOMINAL)
 

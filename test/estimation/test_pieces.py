@@ -20,19 +20,19 @@ from pierburg_ros.recording.loss import Loss, numbered_loss
 
 def without(made: Recording, lost: np.ndarray) -> Recording:
     """`made` without the duty messages at `lost`, flags of shape (messages,), and with what their numbers tell."""
-    time, values, number = made.duty.time[~lost], made.duty.values[~lost], np.arange(lost.size)[~lost]
-    return replace(made, duty=Channel(time, values), losses=(numbered_loss("duty", time, number),))
+    time, values, number = made.command.time[~lost], made.command.values[~lost], np.arange(lost.size)[~lost]
+    return replace(made, command=Channel(time, values), losses=(numbered_loss("duty", time, number),))
 
 
 def every_sample(made: Recording) -> Recording:
     """`made` with a duty message for every sample."""
-    return replace(made, duty=Channel(made.time, made.duty.at(made.time, before=0.0)))
+    return replace(made, command=Channel(made.time, made.command.at(made.time, before=0.0)))
 
 
 def steps_lost(share: float, seed: int = 0) -> tuple[Recording, Recording]:
     """Random steps of duty, whole and with a share of the duty messages missing."""
     whole = every_sample(recording({}, duration=40.0))
-    lost = np.random.default_rng(seed).random(whole.duty.time.size) < share
+    lost = np.random.default_rng(seed).random(whole.command.time.size) < share
     lost[0] = lost[-1] = False
     return whole, without(whole, lost)
 
@@ -45,8 +45,8 @@ def test_a_whole_recording_is_one_piece() -> None:
 
 def test_losses_while_the_duty_stands_cost_nothing() -> None:
     whole, _ = steps_lost(0.0)
-    stands = np.zeros(whole.duty.time.size, dtype=bool)
-    stands[1:-1] = (np.diff(whole.duty.values)[1:] == 0.0) & (np.diff(whole.duty.values)[:-1] == 0.0)
+    stands = np.zeros(whole.command.time.size, dtype=bool)
+    stands[1:-1] = (np.diff(whole.command.values)[1:] == 0.0) & (np.diff(whole.command.values)[:-1] == 0.0)
     lost = stands & (np.random.default_rng(1).random(stands.size) < 0.2)
     cut = pieces(without(whole, lost), NOMINAL)
     assert len(cut.parts) == 1 and cut.uncertainty == 0.0
@@ -54,11 +54,11 @@ def test_losses_while_the_duty_stands_cost_nothing() -> None:
 
 def test_a_step_that_may_have_come_at_any_moment_is_cut_out() -> None:
     whole, _ = steps_lost(0.0)
-    steps = np.flatnonzero(np.abs(np.diff(whole.duty.values)) > 0.1) + 1
-    lost = np.zeros(whole.duty.time.size, dtype=bool)
+    steps = np.flatnonzero(np.abs(np.diff(whole.command.values)) > 0.1) + 1
+    lost = np.zeros(whole.command.time.size, dtype=bool)
     lost[steps[3]] = True
     cut = pieces(without(whole, lost), NOMINAL)
-    assert list(cut.left_out) == [(whole.duty.time[steps[3] - 1], whole.duty.time[steps[3] + 1])]
+    assert list(cut.left_out) == [(whole.command.time[steps[3] - 1], whole.command.time[steps[3] + 1])]
     assert len(cut.parts) == 2 and cut.parts[1].time[0] >= cut.left_out[0][1]
 
 
@@ -94,11 +94,11 @@ def test_a_jittery_duty_adds_to_the_noise() -> None:
     random = np.random.default_rng(2)
     jittery = replace(
         whole,
-        duty=Channel(
-            whole.duty.time, np.clip(whole.duty.values + 0.01 * random.standard_normal(whole.time.size), -1, 1)
+        command=Channel(
+            whole.command.time, np.clip(whole.command.values + 0.01 * random.standard_normal(whole.time.size), -1, 1)
         ),
     )
-    lost = random.random(whole.duty.time.size) < 0.2
+    lost = random.random(whole.command.time.size) < 0.2
     lost[0] = lost[-1] = False
     few = pieces(without(jittery, lost & (random.random(lost.size) < 0.25)), NOMINAL).uncertainty
     many = pieces(without(jittery, lost), NOMINAL).uncertainty

@@ -25,7 +25,7 @@ def test_channels_on_different_times_are_held_until_their_next_value():
     enabled = Channel(np.array([1.0]), np.array([0.0]))
     inputs = inputs_of(recording(np.ones(2000), supply_voltage=supply, enabled=enabled))
     assert inputs.time.tolist() == [0.0, 0.5, 1.0, 1.5]
-    assert inputs.duty.tolist() == [0.0, 0.0, 0.22, 0.22]
+    assert inputs.command.tolist() == [0.0, 0.0, 0.22, 0.22]
     assert inputs.supply_voltage.tolist() == [12.0, 12.0, 12.0, 13.0]
     assert inputs.enabled.tolist() == [True, True, False, False]
 
@@ -57,7 +57,7 @@ def test_another_model_takes_over_where_it_switches():
 def test_a_position_that_a_hall_voltage_was_turned_into_is_compared_as_position():
     volts = synthetic_recording(NOMINAL, TIME, OPENED, noise=0.0)
     angle = (volts.measured - 0.42) / 4.1 * np.pi / 2
-    run = run_of(Recording("bench", "position", TIME, angle, volts.duty), NOMINAL)
+    run = run_of(Recording("bench", "position", TIME, angle, volts.command), NOMINAL)
     np.testing.assert_allclose(run.simulated(NOMINAL), angle, atol=1e-12)
 
 

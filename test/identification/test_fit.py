@@ -78,7 +78,7 @@ def test_breakaway_torque_is_found_from_coulomb_friction_upwards(nominal):
 
 def test_a_position_recording_of_a_hall_sensor_is_fitted_in_radians(nominal, rich_recording):
     angle = (rich_recording.measured - 0.42) / 4.1 * np.pi / 2
-    recording = Recording("bench", "position", rich_recording.time, angle, rich_recording.duty)
+    recording = Recording("bench", "position", rich_recording.time, angle, rich_recording.command)
     volts, radians = (fit(nominal, [r], ["coulomb_friction"]) for r in (rich_recording, recording))
     assert radians.values["coulomb_friction"] == pytest.approx(volts.values["coulomb_friction"], rel=1e-4)
     assert radians.rmse == pytest.approx(volts.rmse / 4.1 * np.pi / 2, rel=1e-3)

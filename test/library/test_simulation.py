@@ -30,7 +30,7 @@ def test_a_saved_simulation_reads_as_it_was(simulation, tmp_path):
     recording = pr.read(tmp_path / "simulated.mcap")
     np.testing.assert_array_equal(recording.measured, simulation.measured)
     np.testing.assert_allclose(recording.time, simulation.time, atol=1e-9)
-    np.testing.assert_array_equal(recording.duty.at(recording.time), simulation.duty)
+    np.testing.assert_array_equal(recording.command.at(recording.time), simulation.duty)
 
 
 def test_the_controller_brings_the_shaft_to_its_setpoints():
@@ -45,7 +45,7 @@ def test_the_controller_brings_the_shaft_to_its_setpoints():
         ({}, "Expected either a duty"),
         ({"duty": [0.1, 0.2]}, "values without their times"),
         ({"duty": [0.1, 0.2], "time": [1.0, 0.5]}, "each after the one before"),
-        ({"duty": [0.1], "time": [0.0, 0.5]}, "2 times and 1 values of duty"),
+        ({"duty": [0.1], "time": [0.0, 0.5]}, "2 times and 1 values of command"),
         ({"setpoints": [0.1], "time": [0.0, 0.5]}, "2 times and 1 setpoints"),
         ({"duty": [10.0, 20.0], "time": [0.0, 0.5]}, "Divide percentages by 100"),
         ({"duty": [0.1, 0.2], "time": [0.0, 0.5], "controller": "c.yaml"}, "Found a controller with a duty"),

@@ -56,6 +56,6 @@ def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
 
 def test_a_comparison_with_such_a_model_says_so_in_one_line():
     measured = simulate(NOMINAL, STEPS, TIME)
-    recording = Recording("run", "hall_voltage", TIME, measured, Channel(STEPS.time, STEPS.duty))
+    recording = Recording("run", "hall_voltage", TIME, measured, Channel(STEPS.time, STEPS.command))
     with pytest.raises(InputError, match=r"The model of pierburg cannot be simulated with these values \(from "):
         compare(WRINKLED, recording)

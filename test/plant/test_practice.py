@@ -33,7 +33,7 @@ def labelled(folder: Path) -> tuple[Model, dict[str, Any]]:
 
 def residual(model: Model, recording: Recording) -> float:
     """RMS of measured minus simulated [V]."""
-    inputs = Inputs(recording.duty.time, recording.duty.values)
+    inputs = Inputs(recording.command.time, recording.command.values)
     return float(np.sqrt(np.mean((recording.measured - simulate(model, inputs, recording.time)) ** 2)))
 
 

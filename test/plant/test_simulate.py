@@ -18,9 +18,9 @@ NOMINAL = Model.nominal(read_actuator("pierburg"))
     (
         ([], [], "input times are empty or do not increase"),
         ([0.0, 0.0], [0.1, 0.2], "do not increase"),
-        ([0.0, 1.0], [0.1], "2 times and 1 values of duty"),
+        ([0.0, 1.0], [0.1], "2 times and 1 values of command"),
         ([0.0, np.nan], [0.1, 0.2], "do not increase"),
-        ([0.0, 1.0], [0.1, np.nan], "duty is not finite"),
+        ([0.0, 1.0], [0.1, np.nan], "command is not finite"),
     ),
 )
 def test_unusable_inputs_are_refused(time: list[float], duty: list[float], message: str) -> None:

@@ -52,7 +52,7 @@ def test_what_is_written_reads_back(tmp_path):
     run.write(tmp_path / "train.mcap")
     recording = read_recording(tmp_path / "train.mcap")
     assert np.array_equal(recording.measured, run.measured)
-    assert np.array_equal(recording.duty.values, run.duty)
+    assert np.array_equal(recording.command.values, run.duty)
     assert recording.setpoints is not None
     assert np.array_equal(recording.setpoints.at(recording.time), run.setpoints)
 

@@ -53,7 +53,7 @@ def test_practice_recordings_are_explained_down_to_their_noise(number, part):
         pytest.skip("the practice recordings are not beside the project")
     label = json.loads((folder / "truth.json").read_text())
     recording = read_recording(folder / f"{part}.mcap")
-    simulated = simulate_textbook(label_values(label), recording.duty.time, recording.duty.values, recording.time)
+    simulated = simulate_textbook(label_values(label), recording.command.time, recording.command.values, recording.time)
     rms = np.sqrt(np.mean((recording.measured - simulated) ** 2))
     assert rms <= 1.05 * np.hypot(label["noise_volts"], CONVERTER)
 

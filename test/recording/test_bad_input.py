@@ -43,19 +43,21 @@ def test_damaged_chunk(write_bag, run):
 
 def test_no_duty_topic(write_bag, run):
     assert refusal(write_bag(run(duty="/rosout"))) == (
-        "run.mcap has no duty topic (found: /hall_voltage, /rosout). Name it with --topic duty=/your/topic."
+        "run.mcap has no duty topic (found: /hall_voltage, /rosout). Name it with --topic duty=/your/topic;"
+        " pierburg inspect says what each could be."
     )
 
 
 def test_no_measured_topic(write_bag, run):
     assert refusal(write_bag(run(hall="/angle"))) == (
-        "run.mcap has no measured signal topic (found: /angle, /duty). Name it with --topic hall_voltage=/your/topic."
+        "run.mcap has no measured signal topic (found: /angle, /duty). Name it with --topic hall_voltage=/your/topic;"
+        " pierburg inspect says what each could be."
     )
 
 
 def test_no_messages_at_all(write_bag):
     assert refusal(write_bag([], duty="float", hall_voltage="float")) == (
-        "run.mcap holds no messages, expected hall_voltage or joint_states and more. Record again."
+        "run.mcap holds no messages, expected a measured signal and what drove it. Record again."
     )
 
 
@@ -73,7 +75,7 @@ def test_two_topics_for_one_role(write_bag, run):
         " Choose with --topic hall_voltage=/hall_voltage."
     )
     chosen = read_recording(both, topics={"hall_voltage": "/recorded/hall_voltage"})
-    assert chosen.duty.values.size == 50
+    assert chosen.command.values.size == 50
 
 
 def test_a_named_topic_that_is_not_there(write_bag, run):
@@ -83,8 +85,8 @@ def test_a_named_topic_that_is_not_there(write_bag, run):
 
 
 def test_an_unknown_role(write_bag, run):
-    assert refusal(write_bag(run()), topics={"current": "/duty"}).startswith(
-        "--topic found the unknown signal current, expected one of duty, applied_duty, hall_voltage"
+    assert refusal(write_bag(run()), topics={"volume": "/duty"}).startswith(
+        "--topic found the unknown signal volume, expected one of duty, applied_duty, current, torque, hall"
     )
 
 
@@ -156,8 +158,8 @@ def test_metadata_that_lists_a_file_that_is_gone(tmp_path):
 
 def test_a_recording_validates_itself():
     held = Channel(np.zeros(1), np.zeros(1))
-    with pytest.raises(InputError, match="found quantity 'current', expected one of hall_voltage, position"):
-        Recording("made", "current", np.arange(3.0), np.zeros(3), held)
+    with pytest.raises(InputError, match="found quantity 'weight', expected one of hall_voltage, position, speed"):
+        Recording("made", "weight", np.arange(3.0), np.zeros(3), held)
     with pytest.raises(InputError, match=r"made: hall_voltage has a clock running backwards at 1\.000 s"):
         Recording("made", "hall_voltage", np.array([0.0, 1.0, 0.5]), np.zeros(3), held)
     with pytest.raises(InputError, match="a channel has 2 times and 1 values"):

@@ -38,7 +38,7 @@ def test_ticks_take_the_stamp_of_their_joint_states(write_bag, message, sequence
     recording = read_recording(write_bag(ticks(message, sequence=sequence)))
     assert recording.time_source == "stamp"
     np.testing.assert_allclose(recording.time, STEP * np.arange(200), atol=1e-9)
-    np.testing.assert_allclose(recording.duty.time, STEP * np.arange(200), atol=1e-9)
+    np.testing.assert_allclose(recording.command.time, STEP * np.arange(200), atol=1e-9)
 
 
 def test_a_lost_message_does_not_shift_the_ones_after_it(write_bag, message):
@@ -46,8 +46,8 @@ def test_a_lost_message_does_not_shift_the_ones_after_it(write_bag, message):
     recording = read_recording(write_bag(ticks(message, lost=lost)))
     assert recording.time_source == "stamp"
     np.testing.assert_allclose(recording.time, STEP * recording.measured, atol=1e-9)
-    np.testing.assert_allclose(recording.duty.time, STEP * 1000 * recording.duty.values, atol=1e-9)
-    assert recording.time.size == 199 and recording.duty.time.size == 199
+    np.testing.assert_allclose(recording.command.time, STEP * 1000 * recording.command.values, atol=1e-9)
+    assert recording.time.size == 199 and recording.command.time.size == 199
 
 
 def test_unequal_numbers_without_sequence_fall_back_to_publish_time(write_bag, message):
@@ -74,7 +74,7 @@ def test_unstamped_messages_take_the_last_clock_before_them(write_bag, message):
     recording = read_recording(write_bag(messages))
     assert recording.time_source == "clock"
     np.testing.assert_allclose(recording.time, 0.01 * np.arange(20), atol=1e-9)
-    assert recording.duty.at(np.array([-1.0, 0.0]), before=0.0).tolist() == [0.0, 0.5]
+    assert recording.command.at(np.array([-1.0, 0.0]), before=0.0).tolist() == [0.0, 0.5]
     assert read_recording(write_bag(messages), time="publish").duration == pytest.approx(0.95)
 
 
@@ -103,7 +103,7 @@ def test_a_publisher_whose_clock_is_wrong_is_refused(write_bag, run):
     path = write_bag(shifted)
     with pytest.raises(InputError, match=r"two clocks: /hall_voltage \(publish\) and /duty \(publish\) differ by 5 s"):
         read_recording(path)
-    assert read_recording(path, time="log").duty.time[0] == pytest.approx(0.001)
+    assert read_recording(path, time="log").command.time[0] == pytest.approx(0.001)
 
 
 def test_a_latched_setpoint_from_before_the_recording_is_no_second_clock(write_bag, message, run):

@@ -108,6 +108,6 @@ def test_no_false_gap_in_whole_recordings(tmp_path, folder):
     for file in files:
         recording = read_recording(file)
         assert recording.losses == ()
-        duty = recording.duty.at(recording.time, before=0.0)
+        duty = recording.command.at(recording.time, before=0.0)
         as_table = table(tmp_path / "run.csv", recording.time, duty, recording.measured)
         assert read_recording(as_table).losses == ()

@@ -18,14 +18,14 @@ def test_reads_hall_voltage_and_duty_under_any_namespace(write_bag, run):
     assert recording.quantity == "hall_voltage" and recording.unit == "V"
     np.testing.assert_allclose(recording.time, 0.01 * np.arange(50), atol=1e-9)
     np.testing.assert_array_equal(recording.measured, np.arange(50.0))
-    np.testing.assert_allclose(recording.duty.time, 0.01 * np.arange(50) + 0.001, atol=1e-9)
-    np.testing.assert_array_equal(recording.duty.values, np.arange(50) / 1000)
+    np.testing.assert_allclose(recording.command.time, 0.01 * np.arange(50) + 0.001, atol=1e-9)
+    np.testing.assert_array_equal(recording.command.values, np.arange(50) / 1000)
 
 
 def test_reads_topics_that_a_person_names(write_bag, run):
     path = write_bag(run(hall="/angle_sensor", duty="/bench/pwm"))
     recording = read_recording(path, topics={"hall_voltage": "/angle_sensor", "duty": "/bench/pwm"})
-    assert recording.measured[-1] == 49.0 and recording.duty.values[-1] == pytest.approx(0.049)
+    assert recording.measured[-1] == 49.0 and recording.command.values[-1] == pytest.approx(0.049)
 
 
 def test_reads_position_and_every_optional_signal(write_bag, message):
@@ -63,8 +63,8 @@ def test_hall_voltage_wins_over_position(write_bag, run, message):
 def test_applied_duty_is_the_input_unless_a_duty_is_named(write_bag, run, message):
     applied = [message("/applied_duty", "float", 1000 + 0.01 * k, 1000 + 0.01 * k, k, 0.5) for k in range(50)]
     path = write_bag(sorted(run() + applied, key=lambda item: item.log))
-    assert set(read_recording(path).duty.values) == {0.5}
-    assert read_recording(path, topics={"duty": "/duty"}).duty.values[-1] == pytest.approx(0.049)
+    assert set(read_recording(path).command.values) == {0.5}
+    assert read_recording(path, topics={"duty": "/duty"}).command.values[-1] == pytest.approx(0.049)
 
 
 def test_takes_the_shaft_among_several_joints(write_bag, run, message):
@@ -106,7 +106,7 @@ def test_reads_rosbag2_directories(tmp_path, plugin):
     recording = read_recording(tmp_path / "bag")
     np.testing.assert_allclose(recording.time, 0.01 * np.arange(10), atol=1e-9)
     np.testing.assert_allclose(recording.measured, 0.1 * np.arange(10))
-    np.testing.assert_allclose(recording.duty.values, 0.01 * np.arange(10))
+    np.testing.assert_allclose(recording.command.values, 0.01 * np.arange(10))
 
 
 def test_reads_what_a_killed_writer_left(write_bag, run, tmp_path):
@@ -123,7 +123,7 @@ def test_topics_outside_the_contract_change_nothing(write_bag, run, message):
     plain = read_recording(write_bag(run(), "plain.mcap"))
     noisy = read_recording(write_bag(sorted(run() + logs, key=lambda item: item.log), "noisy.mcap"))
     np.testing.assert_array_equal(plain.measured, noisy.measured)
-    np.testing.assert_array_equal(plain.duty.time, noisy.duty.time)
+    np.testing.assert_array_equal(plain.command.time, noisy.command.time)
 
 
 @pytest.mark.skipif(not XL330.exists(), reason="the measured XL330 runs are not beside this checkout")

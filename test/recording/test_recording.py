@@ -31,14 +31,14 @@ def test_a_window_keeps_the_duty_in_force_at_its_start(recording):
     window = recording.select(4.0, 7.0)
     np.testing.assert_allclose(window.time[[0, -1]], [0.0, 3.0])
     np.testing.assert_array_equal(window.measured, np.arange(40.0, 71.0))
-    np.testing.assert_allclose(window.duty.time, [-2.0, 2.0])
-    np.testing.assert_array_equal(window.duty.values, [0.2, 0.3])
+    np.testing.assert_allclose(window.command.time, [-2.0, 2.0])
+    np.testing.assert_array_equal(window.command.values, [0.2, 0.3])
     assert window.name == "made" and window.duration == pytest.approx(3.0)
 
 
 def test_a_window_holds_the_same_inputs_as_the_whole(recording):
     window = recording.select(1.0, 9.5)
-    np.testing.assert_array_equal(window.duty.at(window.time), recording.duty.at(window.time + 1.0))
+    np.testing.assert_array_equal(window.command.at(window.time), recording.command.at(window.time + 1.0))
     np.testing.assert_array_equal(window.enabled.at(window.time), recording.enabled.at(window.time + 1.0))
 
 

@@ -20,8 +20,8 @@ def test_a_simulated_run_reads_back(tmp_path):
     recording = read_recording(tmp_path / "run.mcap")
     np.testing.assert_allclose(recording.time, TIME, atol=1e-9)
     np.testing.assert_array_equal(recording.measured, HALL)
-    np.testing.assert_allclose(recording.duty.time, TIME, atol=1e-9)
-    np.testing.assert_array_equal(recording.duty.values, DUTY)
+    np.testing.assert_allclose(recording.command.time, TIME, atol=1e-9)
+    np.testing.assert_array_equal(recording.command.values, DUTY)
     np.testing.assert_array_equal(recording.setpoints.values, setpoints.values)
 
 
@@ -31,7 +31,7 @@ def test_a_position_and_an_earlier_duty_read_back(tmp_path):
     recording = read_recording(tmp_path / "run.mcap")
     assert recording.quantity == "position"
     np.testing.assert_array_equal(recording.measured, HALL)
-    np.testing.assert_allclose(recording.duty.time, duty.time, atol=1e-9)
+    np.testing.assert_allclose(recording.command.time, duty.time, atol=1e-9)
 
 
 @pytest.mark.parametrize("as_directory", [False, True])

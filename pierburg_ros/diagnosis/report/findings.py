@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
-from pierburg_ros.diagnosis.location.windows import windows
+from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
+    CannotAct,
     Change,
     Diagnosis,
     Effect,
@@ -33,7 +34,7 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain, tied
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
@@ -64,6 +65,7 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
+        cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise),
         advice=words.advice(conclusion.verdict, named, parameters_found, hidden, limits),
@@ -122,7 +124,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=found.nominal.values[name],
             value=final.model.values[name],
-            unit=UNITS[name][0],
+            unit=actuator.parameters[name].unit,
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
@@ -199,6 +201,12 @@ def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
     ]
 
 
+def cannot_act(actuator: Actuator) -> list[CannotAct]:
+    """Effects that are searched for elsewhere and cannot act in this kind of actuator."""
+    obstacles = {effect.id: actuator.obstacle(effect) for effect in EFFECTS if effect.variants}
+    return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
+
+
 def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
     """Windows and regimes of the first recording in which the mismatch gathers; none where there is none.
 
@@ -215,7 +223,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
             {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
         )
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
-    found = windows(motion.time, mark**2)
+    found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
     return locations(motion, residual, found), regimes(motion, residual)
 
 
@@ -241,7 +249,7 @@ def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
     return {
         "time": run.time,
         "measured": run.measured,
-        "duty": run.inputs.duty[place],
+        "duty": run.inputs.command[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
         "final": run.simulated(conclusion.model, conclusion.final.switch),

@@ -15,9 +15,9 @@ from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Varian
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
-REDATED = np.arange(-4.0, 4.1, 0.25)
-"""Where around its first estimate the moment of a change is looked for again [s]. Work: 33 simulations; a quarter of a
-second apart, which a descent bridges."""
+REDATED = np.arange(-42.0, 43.0, 2.625)
+"""Where around its first estimate the moment of a change is looked for again, in the actuator's own time. Work: 33
+simulations; a quarter of a second apart for the valve, which a descent bridges."""
 LEVEL = 1e-6
 """Difference in cost, as a share of it, within which two moments are on one step. Derived: a moment that does not count
 changes the cost by rounding alone, below 1e-12."""
@@ -114,8 +114,8 @@ def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
 def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, float]]]:
     """The cost and the values of `fit` with each of the moments around that of its change."""
     name = f"{fit.explanation.changed}{WHEN}"
-    coordinates = estimator.coordinates(fit.explanation)
-    moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]
+    coordinates, shifts = estimator.coordinates(fit.explanation), REDATED * estimator.data.scales.time
+    moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in shifts]
     return [(estimator.chi2_at(fit.explanation, values), values) for values in moved]
 
 

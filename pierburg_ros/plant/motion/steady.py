@@ -1,7 +1,7 @@
 """A linear plant going on as before: most samples of a recording are one more step of the same piece.
 
 What goes on is either a standstill or x'' + damping x' + stiffness x = constant, of which `slide` has left the
-responses in the state; the same duty, supply and step, and no event, make the next step two lines.
+responses in the state; the same command, supply and step, and no event, make the next step two lines.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ ALIKE = 1e-9
 
 
 @kernel
-def goes_on(p, s, duty, supply, closed_bridge, duration):
+def goes_on(p, s, command, supply, closed_bridge, duration):
     """Whether the last step could be repeated for `duration` [s]; then it has been."""
-    if not s.steady or s.serial != p.serial or duty != s.duty or supply != s.supply:
+    if not s.steady or s.serial != p.serial or command != s.command or supply != s.supply:
         return False
     if closed_bridge != s.closed_bridge or s.waiting > 0:
         return False

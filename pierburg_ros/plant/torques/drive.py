@@ -1,26 +1,38 @@
-"""From duty to motor torque: dead band, supply, winding, bridge. Equations (1) and (5) of the paper."""
+"""From the input to motor torque: dead band, supply, winding, bridge. Equations (1) and (5) of the paper.
+
+Under a current or torque drive there is no winding: the input makes the torque, whatever the velocity.
+"""
 
 from __future__ import annotations
 
 import math
 
 from pierburg_ros.effects import pwm_deadband, supply_sag, thermal_resistance
+from pierburg_ros.effects.effect import DRIVES
 from pierburg_ros.kernel import kernel
+
+VOLTAGE = DRIVES.index("voltage")
+"""The input is a duty; armature voltage = duty x supply."""
+TORQUE = DRIVES.index("torque")
+"""The input is the torque at the output [N.m]; else, the current of the motor [A]."""
 
 
 @kernel
-def switch(p, s, duty, supply, closed_bridge):
-    """Put `duty` in force: armature voltage = duty x supply; an open bridge carries no current at all."""
+def switch(p, s, command, supply, closed_bridge):
+    """Put `command` in force: a duty, current [A] or torque [N.m]; an open bridge carries no current at all."""
     heats = p.thermal_resistance.thermal_resistance != 0.0
-    same = duty == s.duty and supply == s.supply and closed_bridge == s.closed_bridge
+    same = command == s.command and supply == s.supply and closed_bridge == s.closed_bridge
     if same and s.serial == p.serial and not heats:
         return
-    s.duty, s.supply, s.closed_bridge, s.serial = duty, supply, closed_bridge, p.serial
+    s.command, s.supply, s.closed_bridge, s.serial = command, supply, closed_bridge, p.serial
     s.steady = False
     if not closed_bridge:
         s.voltage = s.drive = s.braking = s.current = 0.0
         return
-    effective = pwm_deadband.effective(p.pwm_deadband, duty)
+    if p.drive != VOLTAGE:
+        s.drive = command * (p.torque_scale if p.drive == TORQUE else p.gear_ratio * p.torque_constant)
+        return
+    effective = pwm_deadband.effective(p.pwm_deadband, command)
     s.voltage = effective * supply
     s.resistance = p.armature_resistance
     if heats:

@@ -1,50 +1,64 @@
-"""From shaft angle to measured value: play of the magnet, lag, characteristic, converter."""
+"""From shaft to measured value: play of the magnet, lag, characteristic, converter."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
 from pierburg_ros.effects import sensor_hysteresis, sensor_lag, sensor_nonlinearity, sensor_quantization
+from pierburg_ros.effects.effect import SENSORS
 from pierburg_ros.kernel import kernel
 
-SPAN = math.pi / 2
-"""Angle between the two Hall end voltages [rad]."""
+POSITION = SENSORS.index("position")
+"""The sensor gives the angle itself [rad]; else, a Hall voltage [V]."""
+SPEED = SENSORS.index("speed")
+"""The sensor gives the velocity [rad/s]."""
+
+
+@kernel
+def sensed(p, s):
+    """What the sensor looks at: the shaft's angle [rad], or its velocity [rad/s]."""
+    return s.velocity if p.sensor == SPEED else s.angle
 
 
 @kernel
 def follow(p, s, duration):
     """Let the moving parts of the sensor follow the shaft, which has gone one way for `duration` [s]."""
+    true = sensed(p, s)
     start = s.sensor_hysteresis.magnet
-    s.sensor_hysteresis.magnet = sensor_hysteresis.dragged(p.sensor_hysteresis, start, s.angle)
+    s.sensor_hysteresis.magnet = sensor_hysteresis.dragged(p.sensor_hysteresis, start, true)
     moving = duration
     if p.sensor_hysteresis.width != 0.0 and s.sensor_hysteresis.magnet != start:
         moving = duration * min(
-            abs(s.sensor_hysteresis.magnet - start) / max(abs(s.angle - s.sensor_hysteresis.followed), 1e-300), 1.0
+            abs(s.sensor_hysteresis.magnet - start) / max(abs(true - s.sensor_hysteresis.followed), 1e-300), 1.0
         )
     lagged = sensor_lag.followed(p.sensor_lag, s.sensor_lag.lagged, start, start, duration - moving)
     s.sensor_lag.lagged = sensor_lag.followed(p.sensor_lag, lagged, start, s.sensor_hysteresis.magnet, moving)
-    s.sensor_hysteresis.followed = s.angle
+    s.sensor_hysteresis.followed = true
 
 
 @kernel
 def measured(p, s):
-    """Measured quantity before noise and converter: Hall voltage [V], or angle [rad] where that is measured."""
-    angle = s.sensor_lag.lagged if p.sensor_moves else s.angle
-    fraction = sensor_nonlinearity.bent(p.sensor_nonlinearity, angle / SPAN)
-    if p.measures_position:
-        return fraction * SPAN
+    """Measured quantity before noise and converter: Hall voltage [V], angle [rad] or velocity [rad/s]."""
+    shown = s.sensor_lag.lagged if p.sensor_moves else sensed(p, s)
+    if p.sensor == SPEED:
+        return p.sensor_scale * shown + p.sensor_offset
+    fraction = sensor_nonlinearity.bent(p.sensor_nonlinearity, shown / p.sensor_span)
+    if p.sensor == POSITION:
+        return p.sensor_scale * (fraction * p.sensor_span) + p.sensor_offset
     return p.hall_voltage_closed + (p.hall_voltage_open - p.hall_voltage_closed) * fraction
 
 
 @kernel
 def decode(p, value, is_angle):
-    """Angle [rad] that a measured `value` shows: a Hall voltage [V], or an angle [rad] as the sensor gives it."""
-    indicated = value if is_angle else (value - p.hall_voltage_closed) / per_radian(p)
+    """Angle [rad] that a measured `value` shows: a Hall voltage [V], or an angle [rad] as the sensor gives it.
+
+    The velocity [rad/s] where the sensor gives that.
+    """
+    zero, slope = (p.sensor_offset, p.sensor_scale) if is_angle else (p.hall_voltage_closed, per_radian(p))
+    indicated = (value - zero) / slope
     if p.sensor_nonlinearity.amplitude == 0.0:
         return indicated
-    return sensor_nonlinearity.unbent(p.sensor_nonlinearity, indicated / SPAN) * SPAN
+    return sensor_nonlinearity.unbent(p.sensor_nonlinearity, indicated / p.sensor_span) * p.sensor_span
 
 
 @kernel
@@ -59,13 +73,14 @@ def decode_all(p, values, is_angle):
 @kernel
 def sensitivity(p, angle, is_angle):
     """Change of the measured value at `angle` [rad] per rad."""
-    return (1.0 if is_angle else per_radian(p)) * sensor_nonlinearity.slope(p.sensor_nonlinearity, angle / SPAN)
+    straight = p.sensor_scale if is_angle else per_radian(p)
+    return straight * sensor_nonlinearity.slope(p.sensor_nonlinearity, angle / p.sensor_span)
 
 
 @kernel
 def per_radian(p):
     """Mean change of the Hall voltage over the span [V/rad]."""
-    return (p.hall_voltage_open - p.hall_voltage_closed) / SPAN
+    return (p.hall_voltage_open - p.hall_voltage_closed) / p.sensor_span
 
 
 @kernel

@@ -101,7 +101,7 @@ def joint(topic: str, names: list[str], positions: int) -> int:
         return names.index(SHAFT)
     raise InputError(
         f"{topic} has {positions} positions (joints: {', '.join(names) or 'unnamed'}), expected one joint,"
-        f" or one named {SHAFT}. Record the shaft's joint alone."
+        f" or one named {SHAFT}. Choose with a signal map, position: {{topic: {topic}, field: 'position[NAME]'}}."
     )
 
 

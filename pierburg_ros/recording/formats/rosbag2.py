@@ -75,6 +75,11 @@ def listed_in(folder: Path) -> Listed:
         present = sorted(folder.glob("*.mcap"))
         if len(present) == 1:
             return Listed(present, "")
+        if present:
+            raise InputError(
+                f"{folder.name} is a folder without metadata.yaml and with {len(present)} MCAP files, expected a rosbag2"
+                " directory. Restore it with 'ros2 bag reindex', or name one of its files."
+            )
         raise InputError(
             f"{folder.name} is a folder without metadata.yaml ({len(present)} MCAP files), expected a rosbag2"
             " directory. Name one of its files."

@@ -68,7 +68,7 @@ def test_a_change_is_dated_by_its_slope() -> None:
         .simulated(NOMINAL, Switch(NOMINAL.with_values({"armature_resistance": 4.4}), 7.0))
     )
     noisy = hall + 0.003 * np.random.default_rng(2).standard_normal(hall.size)
-    made = Recording("changed.mcap", "hall_voltage", plain.time, noisy, plain.duty)
+    made = Recording("changed.mcap", "hall_voltage", plain.time, noisy, plain.command)
     estimator = Estimator(data_on(made), NOMINAL)
     starts = change_starts(estimator, estimator.at(NOTHING), "armature_resistance", 2)
     assert len(starts) == 2

@@ -78,7 +78,7 @@ def test_steps_of_the_converter_are_seen_and_not_believed() -> None:
     plain = recording({}, duration=6.0)
     clean = data_of([plain], NOMINAL).runs[0].simulated(NOMINAL)
     noisy = clean + 0.002 * np.random.default_rng(1).standard_normal(clean.size)
-    rounded = Recording("steps.mcap", "hall_voltage", plain.time, np.round(noisy / 0.02) * 0.02, plain.duty)
+    rounded = Recording("steps.mcap", "hall_voltage", plain.time, np.round(noisy / 0.02) * 0.02, plain.command)
     stepped = data_on(rounded)
     found = conclude(found_among(stepped, made_up(Explanation(), 1.0, NOMINAL)))
     assert found.verdict == "missing_physics"
@@ -174,7 +174,7 @@ def test_a_change_in_the_middle_is_dated() -> None:
     after = NOMINAL.with_values({"armature_resistance": 4.9})
     hall = data_of([plain], NOMINAL).runs[0].simulated(NOMINAL, Switch(after, 13.4))
     noise = 0.003 * np.random.default_rng(7).standard_normal(hall.size)
-    duty = Channel(plain.time, plain.duty.values)
+    duty = Channel(plain.time, plain.command.values)
     changed = Recording("changed.mcap", "hall_voltage", plain.time, hall + noise, duty)
     found = conclude(search(data_on(changed), NOMINAL))
     assert found.verdict == "parameter_drift"

@@ -43,6 +43,6 @@ def test_a_pendulum_has_none(closed_form_recording):
         "position",
         closed_form_recording.time,
         closed_form_recording.measured,
-        closed_form_recording.duty,
+        closed_form_recording.command,
     )
     assert static_characteristic([recording], read_actuator("xl330")) is None

@@ -30,7 +30,7 @@ def test_reads_every_column(tmp_path):
     assert recording.quantity == "hall_voltage" and recording.time_source == "column"
     np.testing.assert_allclose(recording.time, [0.0, 0.1, 0.2])
     np.testing.assert_array_equal(recording.measured, [0.42, 0.5, 0.7])
-    np.testing.assert_array_equal(recording.duty.values, [0.0, 0.2, 0.2])
+    np.testing.assert_array_equal(recording.command.values, [0.0, 0.2, 0.2])
     np.testing.assert_array_equal(recording.supply_voltage.at(recording.time), [13.4, 13.4, 13.2])
     np.testing.assert_array_equal(recording.setpoints.values, [0.1, 0.3])
     np.testing.assert_array_equal(recording.enabled.at(recording.time), [1.0, 1.0, 0.0])

@@ -17,7 +17,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 try:
     found = read_recording(sys.argv[1])
-    print(found.quantity, found.time.tolist(), found.measured.tolist(), found.duty.values.tolist())
+    print(found.quantity, found.time.tolist(), found.measured.tolist(), found.command.values.tolist())
 except InputError as error:
     print(error)
 """

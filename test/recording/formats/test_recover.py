@@ -63,7 +63,7 @@ def test_a_file_that_only_lacks_its_end_reads_the_same_afterwards(tmp_path, whol
     first, second = read_recording(whole), read_recording(tmp_path / "mended.mcap")
     assert (first.time == second.time).all()
     assert (first.measured == second.measured).all()
-    assert (first.duty.values == second.duty.values).all()
+    assert (first.command.values == second.command.values).all()
 
 
 def test_a_damaged_chunk_is_left_out_and_the_rest_stays(tmp_path, whole):

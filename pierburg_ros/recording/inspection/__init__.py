@@ -1,0 +1,5 @@
+"""What is in a file, what each number of it could be, and a signal map to edit."""
+
+from pierburg_ros.recording.inspection.content import FieldContent, Inspection, TopicContent, inspect
+
+__all__ = ["FieldContent", "Inspection", "TopicContent", "inspect"]
