@@ -44,7 +44,7 @@ def measured(change: Callable[[np.ndarray], np.ndarray]) -> Make:
 
 
 def duty(change: Callable[[np.ndarray], np.ndarray]) -> Make:
-    return lambda one, other: [replace(one, duty=Channel(one.duty.time, change(one.duty.values)))]
+    return lambda one, other: [replace(one, command=Channel(one.command.time, change(one.command.values)))]
 
 
 def supply(change: Callable[[np.ndarray], np.ndarray]) -> Make:
@@ -59,7 +59,7 @@ def timed(factor: float) -> Make:
     def make(one: Recording, other: Recording) -> list[Recording]:
         channels = {
             name: Channel(factor * channel.time, channel.values)
-            for name in ("duty", "supply_voltage", "enabled", "setpoints")
+            for name in ("command", "supply_voltage", "enabled", "setpoints")
             if (channel := getattr(one, name)) is not None
         }
         changed = replace(one, time=factor * one.time, temperature=None, losses=(), **channels)
@@ -70,34 +70,34 @@ def timed(factor: float) -> Make:
 
 
 def later(by: float) -> Make:
-    return lambda one, other: [replace(one, duty=Channel(one.duty.time + by, one.duty.values))]
+    return lambda one, other: [replace(one, command=Channel(one.command.time + by, one.command.values))]
 
 
 def seldom(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, duty=Channel(one.duty.time[::10], one.duty.values[::10]))]
+    return [replace(one, command=Channel(one.command.time[::10], one.command.values[::10]))]
 
 
 def another_run(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, duty=other.duty)]
+    return [replace(one, command=other.command)]
 
 
 def reversed_in_time(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, duty=Channel(one.duty.time, one.duty.values[::-1]))]
+    return [replace(one, command=Channel(one.command.time, one.command.values[::-1]))]
 
 
 def setpoint(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, duty=one.setpoints)] if one.setpoints is not None else []
+    return [replace(one, command=one.setpoints)] if one.setpoints is not None else []
 
 
 def setpoint_of_travel(one: Recording, other: Recording) -> list[Recording]:
     if one.setpoints is None:
         return []
     inside = np.clip(one.setpoints.values / (np.pi / 2), -1.0, 1.0)
-    return [replace(one, duty=Channel(one.setpoints.time, inside))]
+    return [replace(one, command=Channel(one.setpoints.time, inside))]
 
 
 def swapped(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, measured=one.duty.at(one.time), duty=Channel(one.time, one.measured))]
+    return [replace(one, measured=one.command.at(one.time), duty=Channel(one.time, one.measured))]
 
 
 FAULTS = (

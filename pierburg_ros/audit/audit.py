@@ -65,7 +65,7 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
         return unmoved
     found = followed(signals, given, nominal)
     if not found and given is not None and given.suffices:
-        found = early(Signals.of(recording, TIMED), given.model) or rescaled(signals, given, nominal)
+        found = early(Signals.of(recording, TIMED), given) or rescaled(signals, given, nominal)
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []

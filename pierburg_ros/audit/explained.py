@@ -12,12 +12,15 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.estimation.shooting import stretch_length
 from pierburg_ros.plant import Model, simulate
 from pierburg_ros.plant.decode import decoded
 
-PIECES = 20
-"""Pieces of a recording that each start from the measured state, where one run from the start explains little. Chosen:
-1 s of a motion of 20 s; a pendulum that is driven over the top leaves any longer simulation."""
+FEWEST = 40
+"""Samples of a piece that starts from the measured state, at least. Derived: twice those over which a velocity is told."""
+SHORTER = 0.5
+"""Length of the pieces in stretches of `estimation`, in which an error of the beginning stays small. Chosen: half, for
+nothing corrects the beginning here."""
 COMPARED = 4000
 """Samples that a fit compares. Work: more of them tell no more of a slip."""
 BRIEF, FULL = 2, 7
@@ -49,13 +52,15 @@ class Explained:
     """How signals and actuator agree: what is left of the motion, how velocities correlate, how far numbers drifted.
 
     `share` of the motion is explained by `model`, 1 all; `agreement` is the largest correlation of measured and
-    simulated velocity within a few samples; `drift` the root of the sum of squared logarithms.
+    simulated velocity within a few samples; `drift` the root of the sum of squared logarithms. Simulated in pieces of a
+    `length` [s].
     """
 
     share: float
     agreement: float
     drift: float
     model: Model
+    length: float
     measured: Signal
     simulated: Signal
 
@@ -72,21 +77,23 @@ class Explained:
 
 def explained(signals: Signals, nominal: Model, iterations: int = FULL) -> Explained:
     """The better of one simulation from the first sample and of pieces that each start from the measured state."""
-    whole = Fit(signals, nominal, 1).best(iterations)
+    whole = Fit(signals, nominal).best(iterations)
     if whole.suffices or iterations < FULL:
         return whole
-    pieces = Fit(signals, nominal, PIECES).best(iterations)
+    stretch = SHORTER * stretch_length(signals.time, signals.measured, signals.quantity)
+    pieces = Fit(signals, nominal, max(stretch, FEWEST * signals.interval)).best(iterations)
     return max(whole, pieces, key=lambda found: (found.suffices, found.share))
 
 
 class Fit:
     """Least squares of the decoded angle by the logarithms of the actuator's positive numbers."""
 
-    def __init__(self, signals: Signals, nominal: Model, pieces: int) -> None:
+    def __init__(self, signals: Signals, nominal: Model, length: float = math.inf) -> None:
         self.signals, self.nominal = signals, nominal
         self.names = tuple(_drifting(nominal))
         self.angle = decoded(nominal, signals.measured, signals.quantity)
-        self.starts = tuple(_starts(signals, nominal, self.angle, pieces))
+        self.length = length
+        self.starts = tuple(_starts(signals, nominal, self.angle, max(math.floor(signals.duration / length), 1)))
         self.stride = max(signals.time.size // COMPARED, 1)
         self.motion = self._motion()
 
@@ -98,8 +105,14 @@ class Fit:
         model = self._model(found.point)
         simulated = self.simulated(model)
         share = 1.0 - float(np.mean(np.square(found.residual[size:]))) if self.motion > 0.0 else 0.0
-        agreement = agreed(self.angle, simulated, [first for first, *_ in self.starts])
-        return Explained(share, agreement, float(np.linalg.norm(found.point)), model, self.angle, simulated)
+        agreement = agreed(self.angle, simulated, self.cuts)
+        drift = float(np.linalg.norm(found.point))
+        return Explained(share, agreement, drift, model, self.length, self.angle, simulated)
+
+    @property
+    def cuts(self) -> list[int]:
+        """Samples at which a piece begins."""
+        return [first for first, *_ in self.starts]
 
     def share(self, model: Model) -> float:
         """Share of the motion that `model` explains."""
@@ -200,9 +213,4 @@ def correlated(measured: Signal, simulated: Signal, beside: int) -> tuple[Signal
 
 def simulated_from(signals: Signals, model: Model) -> Signal:
     """Decoded angle that `model` makes of the inputs from the first sample on."""
-    return Fit(signals, model, 1).simulated(model)
-
-
-def explained_by(signals: Signals, model: Model, nominal: Model) -> float:
-    """Share of the motion that the numbers of `model` explain as they are."""
-    return max(Fit(signals, nominal, pieces).share(model) for pieces in (1, PIECES))
+    return Fit(signals, model).simulated(model)

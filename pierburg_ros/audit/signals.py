@@ -38,7 +38,7 @@ class Signals:
         return Signals(
             recording.name,
             recording.quantity,
-            "duty",
+            recording.input,
             recording.time[kept],
             recording.measured[kept],
             inputs_of(recording),
@@ -58,7 +58,7 @@ class Signals:
     @property
     def command(self) -> Signal:
         """The input in force at each sample, shape (samples,)."""
-        return Channel(self.inputs.time, self.inputs.duty).at(self.time, before=0.0)
+        return Channel(self.inputs.time, self.inputs.command).at(self.time, before=0.0)
 
     def measured_as(self, scale: float = 1.0, offset: float = 0.0) -> Signals:
         """With scale * measured + offset as the measured values."""
@@ -66,8 +66,9 @@ class Signals:
 
     def driven_by(self, scale: float = 1.0, offset: float = 0.0) -> Signals:
         """With scale * input + offset as the input; a duty ends at its limits."""
-        values = scale * self.inputs.duty + offset
-        return replace(self, inputs=replace(self.inputs, duty=np.clip(values, -1.0, 1.0)))
+        values = scale * self.inputs.command + offset
+        limited = np.clip(values, -1.0, 1.0) if self.input == "duty" else values
+        return replace(self, inputs=replace(self.inputs, command=limited))
 
     def supplied_with(self, scale: float) -> Signals:
         """With scale * supply voltage."""

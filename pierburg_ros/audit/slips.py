@@ -46,7 +46,7 @@ def _of_input(signals: Signals) -> Iterator[Slip]:
     yield _mapped(name, "polarity reversed", "sign: -1", signals.driven_by(-1.0))
     if name == "duty":
         yield _mapped(name, "a hundredth of the fraction", "scale: 100", signals.driven_by(100.0))
-        if np.min(signals.inputs.duty) >= 0.0:
+        if np.min(signals.inputs.command) >= 0.0:
             yield _mapped(
                 name, "0.5 stands for no duty", "scale: 2, offset: -1", signals.driven_by(2.0, -1.0)
             )
@@ -65,7 +65,7 @@ def _of_sensor(signals: Signals, nominal: Model) -> Iterator[Slip]:
         yield _mapped(name, "radians read as degrees", f"scale: {180 / math.pi:.6g}", signals.measured_as(180 / math.pi))
         yield _mapped(name, "turns read as radians", f"scale: {math.tau:.6g}", signals.measured_as(math.tau))
         yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.measured_as(1e-3))
-        gear = nominal.values["gear_ratio"]
+        gear = nominal.values.get("gear_ratio", 1.0)
         if gear != 1.0:
             yield _mapped(
                 name, "of the motor, before the gear", f"scale: {1.0 / gear:.6g}", signals.measured_as(1.0 / gear)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.audit.explained import BESIDE, Explained, correlated, simulated_from
+from pierburg_ros.audit.explained import BESIDE, Explained, Fit, correlated
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
-from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import decoded
 
 SHARPER = 10
 """Samples over which a velocity is told whose changes are compared. Chosen: 20 ms at 500 Hz; half of it drowns in noise."""
@@ -27,13 +27,14 @@ SELDOM = 5.0
 fifth of the sensor's rate is rare, and one that is early besides is not run at that rate."""
 
 
-def early(signals: Signals, model: Model) -> Fault | None:
+def early(signals: Signals, given: Explained) -> Fault | None:
     """The input comes after the motion that it causes: stamped late, or recorded too seldom.
 
-    `model` is the actuator as it explains the motion.
+    `given` is how the actuator explains a part of these signals.
     """
-    angle = decoded(model, signals.measured, signals.quantity)
-    lags, correlation = correlated(_bends(angle), _bends(simulated_from(signals, model)), BESIDE)
+    pieces = Fit(signals, given.model, given.length)
+    measured, simulated = (_bends(each, pieces.cuts) for each in (pieces.angle, pieces.simulated(given.model)))
+    lags, correlation = correlated(measured, simulated, BESIDE)
     if not lags.size:
         return None
     place = int(np.argmax(correlation))
@@ -62,7 +63,10 @@ def shift(signals: Signals, given: Explained) -> float:
     return float(lags[int(np.argmax(correlation))]) * signals.interval if lags.size else 0.0
 
 
-def _bends(values: Signal) -> Signal:
-    """Change of velocity around each sample, over `SHARPER` samples to either side."""
+def _bends(values: Signal, cuts: Sequence[int]) -> Signal:
+    """Change of velocity around each sample, over `SHARPER` samples to either side; 0 around `cuts`."""
     rise = values[SHARPER:] - values[:-SHARPER]
-    return np.asarray(rise[SHARPER:] - rise[:-SHARPER])
+    change = rise[SHARPER:] - rise[:-SHARPER]
+    for cut in cuts:
+        change[max(cut - 2 * SHARPER, 0) : cut] = 0.0
+    return np.asarray(change)

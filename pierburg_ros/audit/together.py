@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
-from pierburg_ros.audit.explained import CREDIBLE, Explained, explained_by
+from pierburg_ros.audit.explained import Explained
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.plant import Model
