@@ -5,23 +5,16 @@
 
 from __future__ import annotations
 
-import argparse
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from pierburg_ros.actuators import read_actuator
-from pierburg_ros.audit import Fault, audit
+from pierburg_ros.audit import audit
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
-from pierburg_ros.proof.bench import record
-from pierburg_ros.proof.excitation import duty_sequence
-from pierburg_ros.proof.strengths import DRIFTS, STRENGTHS, SPECIAL, drift, strength
-from pierburg_ros.proof.trial import Trial
-from pierburg_ros.recording import Channel, Recording, read_recording
+from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.recording.read import check_bounds
 
 PAGE = Path(__file__).parent.parent / "docs/input_faults.md"
@@ -132,9 +125,9 @@ FAULTS = (
     Made("sensor: turns for radians", measured(lambda a: a / 2 / np.pi), ("position",), "turns", on=("bench",)),
     Made("sensor: radians taken for degrees", measured(np.deg2rad), ("position",), "degrees", on=("bench",)),
     Made("sensor: constant", measured(lambda v: np.full_like(v, v[0])), ("hall_voltage", "position"), "constant"),
-    Made("time: milliseconds for seconds", timed(1e3), ("time",), "milliseconds"),
-    Made("time: microseconds for seconds", timed(1e6), ("time",), "microseconds"),
-    Made("time: nanoseconds for seconds", timed(1e9), ("time",), "nanoseconds"),
+    Made("time: milliseconds for seconds", timed(1e3), ("time",), "unit: ms"),
+    Made("time: microseconds for seconds", timed(1e6), ("time",), "unit: us"),
+    Made("time: nanoseconds for seconds", timed(1e9), ("time",), "unit: ns"),
     Made("time: a thousandth", timed(1e-3), ("time",), "seconds"),
     Made("supply voltage: millivolts for volts", supply(lambda v: 1e3 * v), ("supply_voltage",), "millivolts"),
 )  # fmt: skip

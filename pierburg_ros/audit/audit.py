@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, Explained, explained
+from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, FEWEST, Explained, explained
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.reach import DOUBTFUL, impossible
 from pierburg_ros.audit.servo import followed
@@ -44,6 +44,7 @@ that is missing makes."""
 
 def audit(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
     """Every signal of `recordings` that is not what it is read as, for an actuator like `nominal`; none if all are."""
+    recordings = [each for each in recordings if _can_be_held(each, nominal)]
     lively = [Signals.of(recording) for recording in recordings]
     found = [explained_if_possible(signals, nominal) for signals in lively]
     faults = [
@@ -103,9 +104,7 @@ def undone(candidates: Sequence[Slip], left: float, nominal: Model) -> list[tupl
     return sorted(plain, key=lambda pair: pair[1].cost)
 
 
-def blamed(
-    found: Sequence[tuple[Slip, Explained]], signals: Signals, given: Explained | None, nominal: Model
-) -> Fault:
+def blamed(found: Sequence[tuple[Slip, Explained]], signals: Signals, given: Explained | None, nominal: Model) -> Fault:
     """The best slip, and the next one where it does as well."""
     (best, explanation), *others = found
     alike = [slip for slip, other in others if other.cost <= ALIKE * explanation.cost][:1]
@@ -122,7 +121,10 @@ def unrelated(signals: Signals, given: Explained | None, nominal: Model) -> Faul
     """No slip explains the motion: the input is not that of this motion, or the actuator is another."""
     if given is None:
         signal, _ = impossible(signals, nominal) or (signals.quantity, "")
-        what, mend = "cannot be what it is read as", f"say what it is: `{signal}: {{unit: ..., scale: ..., offset: ...}}`"
+        what, mend = (
+            "cannot be what it is read as",
+            f"say what it is: `{signal}: {{unit: ..., scale: ..., offset: ...}}`",
+        )
     else:
         signal, what = signals.input, "does not cause the motion"
         mend = f"name the {signal} of this joint and this run: `{signal}: {{topic: ...}}`, or choose another --actuator"
@@ -157,3 +159,11 @@ def shifted(signals: Signals, given: Explained | None) -> Iterator[Slip]:
 
 def _named(slip: Slip, best: Slip) -> str:
     return slip.what if slip.signal == best.signal else f"{slip.what} ({slip.signal})"
+
+
+def _can_be_held(recording: Recording, nominal: Model) -> bool:
+    """Whether the recording is long enough, and of what the actuator is driven by and measures."""
+    actuator = nominal.actuator
+    decodes = (recording.quantity, actuator.quantity) == ("position", "hall_voltage")
+    same = recording.quantity == actuator.quantity or decodes
+    return recording.time.size >= 2 * FEWEST and recording.input == actuator.input and same

@@ -172,9 +172,7 @@ def _drifting(nominal: Model) -> Iterator[str]:
                 yield name
 
 
-def _starts(
-    signals: Signals, nominal: Model, angle: Signal, pieces: int
-) -> Iterator[tuple[int, int, float, float]]:
+def _starts(signals: Signals, nominal: Model, angle: Signal, pieces: int) -> Iterator[tuple[int, int, float, float]]:
     """First sample, sample after the last, angle [rad] and velocity [rad/s] of each piece."""
     actuator, cuts = nominal.actuator, np.linspace(0, angle.size, pieces + 1).astype(int)
     near = 0.003 * (actuator.upper_stop - actuator.lower_stop)

@@ -18,12 +18,9 @@ DOUBTFUL = 0.03
 Chosen: half of what is impossible."""
 STRAYS = 0.05
 """Share of the samples that may lie farther out. Chosen: spikes of a sensor are rarer."""
-FASTEST, SLOWEST = 1e-5, 0.2
-"""Sample intervals [s] of recordings of motions, the least and the largest. Given: 100 kHz is the fastest drive, and at
-5 Hz no motion of a servo shows."""
-BRIEFEST, LONGEST = 0.5, 1e5
-"""Durations [s] of what is looked at, the least and the largest. Given: the part that is looked at holds at most 10,000
-samples."""
+CLOSEST, FARTHEST = 1e-5, 10.0
+"""Sample intervals in the time in which the actuator crosses its travel at full speed, the least and the largest.
+Chosen: a hundred thousand samples to a movement are no recording of it, a tenth of a sample neither."""
 
 
 def impossible(signals: Signals, nominal: Model, beyond: float = BEYOND) -> tuple[str, str] | None:
@@ -31,8 +28,12 @@ def impossible(signals: Signals, nominal: Model, beyond: float = BEYOND) -> tupl
 
     `beyond` is the share of the travel by which a reading may lie beyond a stop.
     """
-    if not (FASTEST <= signals.interval <= SLOWEST and BRIEFEST <= signals.duration <= LONGEST):
-        return "time", f"Samples lie {signals.interval:.3g} s apart over {signals.duration:.3g} s."
+    fastest = nominal.scales.time
+    if not CLOSEST <= signals.interval / fastest <= FARTHEST or signals.duration < fastest:
+        return "time", (
+            f"Samples lie {signals.interval:.3g} s apart over {signals.duration:.3g} s, where the actuator crosses its travel"
+            f" in {fastest:.2g} s."
+        )
     actuator, supply = nominal.actuator, signals.inputs.supply_voltage
     if supply is not None and np.median(supply) > (most := nominal.range("supply_voltage")[1]):
         return "supply_voltage", f"It is {np.median(supply):.4g} V, and the actuator's at most {most:g} V."

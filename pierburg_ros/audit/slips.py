@@ -47,9 +47,7 @@ def _of_input(signals: Signals) -> Iterator[Slip]:
     if name == "duty":
         yield _mapped(name, "a hundredth of the fraction", "scale: 100", signals.driven_by(100.0))
         if np.min(signals.inputs.command) >= 0.0:
-            yield _mapped(
-                name, "0.5 stands for no duty", "scale: 2, offset: -1", signals.driven_by(2.0, -1.0)
-            )
+            yield _mapped(name, "0.5 stands for no duty", "scale: 2, offset: -1", signals.driven_by(2.0, -1.0))
         return
     yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.driven_by(1e-3))
     yield _mapped(name, "whole units read as thousandths", "scale: 1000", signals.driven_by(1e3))
@@ -62,7 +60,9 @@ def _of_sensor(signals: Signals, nominal: Model) -> Iterator[Slip]:
     else:
         yield _mapped(name, "polarity reversed", "sign: -1", signals.measured_as(-1.0))
         yield _mapped(name, "degrees read as radians", "unit: deg", signals.measured_as(math.pi / 180.0))
-        yield _mapped(name, "radians read as degrees", f"scale: {180 / math.pi:.6g}", signals.measured_as(180 / math.pi))
+        yield _mapped(
+            name, "radians read as degrees", f"scale: {180 / math.pi:.6g}", signals.measured_as(180 / math.pi)
+        )
         yield _mapped(name, "turns read as radians", f"scale: {math.tau:.6g}", signals.measured_as(math.tau))
         yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.measured_as(1e-3))
         gear = nominal.values.get("gear_ratio", 1.0)
@@ -110,7 +110,10 @@ def between_stops(signals: Signals, nominal: Model) -> Iterator[Slip]:
     offset = ends[0] - scale * low
     if scale > 0.0:
         yield _mapped(
-            name, "scale and zero wrong", f"scale: {scale:.4g}, offset: {offset:.4g}", signals.measured_as(scale, offset)
+            name,
+            "scale and zero wrong",
+            f"scale: {scale:.4g}, offset: {offset:.4g}",
+            signals.measured_as(scale, offset),
         )
 
 

@@ -10,6 +10,9 @@ from pierburg_ros.audit.signals import Signals
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.noise import noise_of
 
+FAR = 0.1
+"""Share of the actuator's own scale by which the inputs would move it at least. Chosen: no friction holds it against
+inputs that move it so far."""
 MOVED = 30.0
 """Span of the readings, in noises, below which nothing shows that the shaft moves. Derived: 10,000 samples of white
 noise span 8; slow drift of a sensor is left room."""
@@ -27,7 +30,8 @@ def still(signals: Signals, nominal: Model) -> list[Fault] | None:
     if span > 0.0:
         return []
     would = simulated_from(signals, nominal)
-    if not np.ptp(would) > 0.0:
+    far = nominal.scales.reading if signals.quantity == "speed" else nominal.scales.angle
+    if not np.ptp(would) > FAR * far:
         return []
     low, high = float(np.min(signals.command)), float(np.max(signals.command))
     return [

@@ -47,7 +47,7 @@ def early(signals: Signals, given: Explained) -> Fault | None:
         f"The shaft moves {1e3 * late:.3g} ms before the {signals.input} says so: changes of velocity correlate by"
         f" {best:.2f} then, by {unshifted:.2f} as it is read."
     )
-    if between >= SELDOM * signals.interval and late <= between:
+    if between >= SELDOM * signals.interval and between / 4.0 <= late <= between:
         what = f"recorded every {1e3 * between:.3g} ms, where samples come every {1e3 * signals.interval:.3g} ms"
         mend = f"record each {signals.input} as it is applied; no line of a signal map brings back what lies between"
         return Fault(signals.name, signals.input, what, evidence, mend)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 
 from pierburg_ros.audit.explained import Explained
 from pierburg_ros.audit.fault import Fault

@@ -31,6 +31,7 @@ def diagnose(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
+    force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
@@ -42,14 +43,16 @@ def diagnose(
         for path in recordings
     ]
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs, force)
         diagnosis.write_into(folder)
     terminal().print(
         shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
     )
 
 
-def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model, jobs: int | None = None) -> Diagnosis:
+def diagnosed_with_progress(
+    recordings: Sequence[Recording], nominal: Model, jobs: int | None = None, force: bool = False
+) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
         task = bar.add_task("reading", total=None)
@@ -57,7 +60,7 @@ def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model, job
         def tell(tried: str) -> None:
             bar.update(task, advance=1, description=tried)
 
-        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs)
+        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs, force=force)
 
 
 def _progress() -> Progress:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pierburg_ros.audit import audit
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.remainder.remainder import remainder
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
+from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
@@ -22,12 +24,17 @@ def diagnose(
     nominal: Model,
     progress: Progress = lambda _: None,
     jobs: int | None = None,
+    force: bool = False,
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core.
-    InputError where the recordings cannot be used.
+    Where signals are not what they are read as, that is all that is said, unless it goes on by `force`. InputError
+    where the recordings cannot be used.
     """
+    faults = [] if force else audit(recordings, nominal)
+    if faults:
+        return refusal(recordings, nominal, faults)
     data = evidence(recordings, nominal)
     found = search(data, nominal, progress, jobs)
     rest = remainder(found, progress, jobs) if verdict_on(found.chosen) == "unexplained" else None

@@ -21,7 +21,8 @@ QUALITY = DataQuality(rate=500.0, jitter=0.0, gaps=0, saturated_share=0.0, stops
 NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.inf)
 CONTRACT = {
     "schema", "recordings", "quantity", "unit", "verdict", "summary", "effects", "parameters", "changes", "locations",
-    "regimes", "fit", "candidates", "not_testable", "residual_torque", "data_quality", "advice",
+    "regimes", "fit", "candidates", "not_testable", "residual_torque", "data_quality", "advice", "cannot_act",
+    "input_faults",
 }  # fmt: skip
 
 
