@@ -90,7 +90,7 @@ def setpoint_of_travel(one: Recording, other: Recording) -> list[Recording]:
 
 
 def swapped(one: Recording, other: Recording) -> list[Recording]:
-    return [replace(one, measured=one.command.at(one.time), duty=Channel(one.time, one.measured))]
+    return [replace(one, measured=one.command.at(one.time), command=Channel(one.time, one.measured))]
 
 
 FAULTS = (
