@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from pierburg_ros.actuators.units import Motion, unit_of
 from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
@@ -83,6 +84,8 @@ class Actuator:
     motion: Motion = "rotary"
     joint: str = ""
     winding: Winding | None = None
+    description: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The content of the user's own file that describes it; None where the package ships it, or code made it."""
 
     @property
     def input(self) -> Input:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding
 from pierburg_ros.actuators.units import Motion
+from pierburg_ros.actuators.values import described
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Drive, Load, Sensor
 from pierburg_ros.errors import InputError, printable
@@ -138,19 +140,13 @@ class _Description(_Strict):
 
 
 def _check_effect(effect: str, values: dict[str, float]) -> None:
-    """Refuse an effect whose numbers are unknown, missing or out of their ranges."""
+    """Refuse an effect whose numbers are unknown or missing."""
     declared = EFFECT[effect]
     if unknown := sorted(set(values) - set(declared.names)):
         raise ValueError(f"{effect} has no parameter {', '.join(unknown)}")
     for parameter in declared.parameters:
-        value = values.get(parameter.name)
-        if value is None and parameter.default is None:
+        if parameter.name not in values and parameter.default is None:
             raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
-        if value is not None and not min(parameter.minimum, 0.0) <= value <= parameter.maximum:
-            span = f"{parameter.minimum:g} to {parameter.maximum:g}"
-            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected {span}")
-        if value and parameter.choices and value not in parameter.choices:
-            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected one of {parameter.choices}")
 
 
 def read_actuator(source: str | Path) -> Actuator:
@@ -158,13 +154,24 @@ def read_actuator(source: str | Path) -> Actuator:
     with reading(source, FORM):
         text, label = _text(source)
         content = parsed(text, label, FORM).content
-        if not isinstance(content, dict):
-            raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
-        try:
-            return _actuator(_Description.model_validate(content))
-        except ValidationError as error:
-            problem = _first_problem(error)
-            raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
+        actuator = actuator_of(content, label)
+    return replace(actuator, description=None) if str(source) in SHIPPED else actuator
+
+
+def actuator_of(content: object, label: str) -> Actuator:
+    """The actuator that the `content` of a description says; InputError, with the `label`, where it says none."""
+    if not isinstance(content, dict):
+        raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
+    try:
+        actuator = replace(_actuator(_Description.model_validate(content)), description=content)
+    except ValidationError as error:
+        problem = _first_problem(error)
+        raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
+    try:
+        described(actuator)
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    return actuator
 
 
 def _text(source: str | Path) -> tuple[str, str]:

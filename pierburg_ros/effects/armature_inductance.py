@@ -13,7 +13,7 @@ EFFECT = Effect(
     record="samples at 10 kHz or a current measurement",
     parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.0127)),),
     strength=("inductance",),
-    typical={"inductance": 0.0025},
+    typical={"inductance": 0.002530387},
     variants=(Variant(("inductance",), grid(inductance=(0.0025, 0.0127))),),
     memory="brief",
     linear=True,

@@ -71,7 +71,7 @@ EFFECT = Effect(
         Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), measure="1"),
     ),
     strength=("amplitude",),
-    typical={"amplitude": 0.0112, "periods_per_motor_revolution": 6.0},
+    typical={"amplitude": 0.0112086, "periods_per_motor_revolution": 6.0},
     variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts),),
     ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
     turns_within=_quarter_turn,

@@ -35,7 +35,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("viscous_difference", "coulomb_difference"),
-    typical={"viscous_difference": 0.184, "coulomb_difference": 0.0112},
+    typical={"viscous_difference": 0.1843969, "coulomb_difference": 0.0112086},
     variants=(
         Variant(("viscous_difference",), grid(viscous_difference=(-0.184, 0.31))),
         Variant(("coulomb_difference",), grid(coulomb_difference=(-0.0112, 0.0112))),

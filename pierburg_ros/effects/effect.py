@@ -145,9 +145,9 @@ class Effect:
     typical: Mapping[str, float]
     """Values as one meets them in an actuator still in service: guesses towards the lower end of what is plausible.
 
-    They are multiples of the scales. What is left out is 0; what is counted from a base parameter is what exceeds it.
-    Faults of the sensor stay below the 0.3 degree asked of a controller at standstill, which has nothing but this
-    sensor and cannot correct them.
+    They are multiples of the scales, to the digits in which the controllers' plants are told. What is left out is 0;
+    what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the 0.3 degree asked of a
+    controller at standstill, which has nothing but this sensor and cannot correct them.
     """
     variants: tuple[Variant, ...] = ()
     """In which ways a search looks for it; none: it is not searched for."""

@@ -103,7 +103,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("torque", "amplitude"),
-    typical={"torque": 0.0187, "amplitude": 0.0112, "frequency": 0.19},
+    typical={"torque": 0.018681, "amplitude": 0.0112086, "frequency": 0.1909623},
     variants=(
         Variant(("amplitude", "frequency", "phase"), _pulsating),
         Variant(("torque", "start", "end"), _for_a_while),

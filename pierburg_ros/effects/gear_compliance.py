@@ -34,7 +34,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("stiffness",),
-    typical={"stiffness": 17.6, "damping": 0.061},
+    typical={"stiffness": 17.60643, "damping": 0.06146564},
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.35, 7.0, 23.5), damping=(0.061,))),),
     memory="brief",
     linear=True,

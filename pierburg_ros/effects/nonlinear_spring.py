@@ -36,7 +36,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("cubic_stiffness", "knee_stiffness"),
-    typical={"cubic_stiffness": 0.0724},
+    typical={"cubic_stiffness": 0.07240354},
     variants=(
         Variant(("cubic_stiffness",), grid(cubic_stiffness=(0.0434,))),
         Variant(("knee_stiffness", "knee_angle"), grid(knee_stiffness=(0.0587,), knee_angle=(0.19, 0.38, 0.57, 0.76))),

@@ -17,8 +17,8 @@ def _starts(missing: Missing) -> Sequence[Start]:
 
 
 def _width(values: Mapping[str, float]) -> float:
-    """Travel [rad] within which the friction turns no more than once."""
-    return values["position_dependent_friction.width"]
+    """Travel [rad] within which the friction turns no more than once; a spot without width is none."""
+    return values["position_dependent_friction.width"] or math.inf
 
 
 EFFECT = Effect(
@@ -61,7 +61,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("amplitude",),
-    typical={"amplitude": 0.0224, "center": 0.51, "width": 0.0955},
+    typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
     variants=(Variant(("amplitude", "center", "width"), _starts),),
     jumps=True,
     turns_within=_width,

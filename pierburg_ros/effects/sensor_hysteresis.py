@@ -26,7 +26,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("width",),
-    typical={"width": 0.00255},
+    typical={"width": 0.002546479},
     variants=(Variant(("width",), grid(width=(0.0032, 0.0127))),),
     # rad: the magnet, and the shaft when the magnet last followed it
     state=("magnet", "followed"),

@@ -20,7 +20,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("time_constant",),
-    typical={"time_constant": 0.021},
+    typical={"time_constant": 0.02094654},
     variants=(Variant(("time_constant",), grid(time_constant=(0.031, 0.105, 0.26))),),
     # rad, the angle that the sensor shows
     state=("lagged",),

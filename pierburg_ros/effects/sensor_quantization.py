@@ -27,7 +27,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("step",),
-    typical={"step": 0.00122},
+    typical={"step": 0.001219512},
     linear=True,
     rounds="step",
 )

@@ -39,7 +39,7 @@ EFFECT = Effect(
     ),
     strength=("breakaway_torque",),
     # what exceeds the sliding friction, here 40 % of the Pierburg actuator's
-    typical={"breakaway_torque": 0.03, "stribeck_velocity": 0.0061},
+    typical={"breakaway_torque": 0.02999422, "stribeck_velocity": 0.006078519},
     variants=(
         Variant(
             ("breakaway_torque", "stribeck_velocity"),

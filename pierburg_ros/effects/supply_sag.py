@@ -26,7 +26,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("source_resistance",),
-    typical={"source_resistance": 0.12},
+    typical={"source_resistance": 0.1208021},
     variants=(Variant(("source_resistance",), grid(source_resistance=(0.12, 0.36, 0.72))),),
     linear=True,
     drives=("voltage",),

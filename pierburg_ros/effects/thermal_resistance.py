@@ -31,7 +31,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("thermal_resistance",),
-    typical={"thermal_resistance": 3.43, "heat_capacity": 61.0},
+    typical={"thermal_resistance": 3.434525, "heat_capacity": 60.98818},
     variants=(
         Variant(
             ("thermal_resistance", "heat_capacity"),

@@ -25,7 +25,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("coefficient",),
-    typical={"coefficient": 0.184},
+    typical={"coefficient": 0.1843969},
     variants=(Variant(("coefficient",), grid(coefficient=(0.184,))),),
     linear=True,
 )

@@ -139,9 +139,13 @@ def _axis_of_effect(name: str, nominal: Model, duration: float) -> Axis:
     scale, (low, high) = p.scale(nominal.scales), p.plausible
     lowest, highest = p.searched or (-math.inf, math.inf)
     lowest, highest = max(lowest, p.minimum / scale), min(highest, p.maximum / scale)
+    # where the actuator always has the effect, a drift of it is searched too
+    own = abs(nominal.values[name]) / scale
     if p.logarithmic:
         lower, upper = math.log(max(lowest, low / DECADE)), math.log(min(highest, high * DECADE))
+        if own > 0.0:
+            lower, upper = min(lower, math.log(own) - DRIFT), max(upper, math.log(own) + DRIFT)
         return Axis(scale, True, lower, upper, p.minimum, p.maximum, 0.001)
     large = max(abs(low), abs(high))
-    lower, upper = max(lowest / large, -WIDTH), min(highest / large, WIDTH)
+    lower, upper = max(lowest / large, -WIDTH), max(min(highest / large, WIDTH), own * math.exp(DRIFT) / large)
     return Axis(scale * large, False, lower, upper, p.minimum, p.maximum, 0.0002 if p.rhythm else 0.001)

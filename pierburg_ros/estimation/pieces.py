@@ -58,9 +58,11 @@ def pieces(recording: Recording, model: Model) -> Pieces:
 
 
 def _top_speed(model: Model) -> float:
-    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage."""
-    value = model.values
-    return value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
+    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage.
+
+    Under other drives it is what the load makes of a large torque.
+    """
+    return model.scales.angle / model.scales.time
 
 
 def _memory(model: Model) -> float:

@@ -44,7 +44,8 @@ class Finding:
 def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict[str, Finding]:
     """A finding for every base parameter of the actuator, free or held, and every other free parameter."""
     names = tuple(dict.fromkeys([*fitted.model.actuator.parameters, *fitted.names]))
-    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, recordings[0].unit)
+    unit = fitted.model.actuator.shown(recordings[0].unit)
+    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, unit)
     return {name: trace.finding(name) for name in names}
 
 

@@ -13,6 +13,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import STATE, new_state, place
 from pierburg_ros.plant.torques.sensor import measured, quantised
@@ -75,6 +76,16 @@ def simulate(
     output = np.empty(times.size)
     _run_into(output, model, inputs, times, initial_angle, initial_velocity)
     return output
+
+
+def motor_torque(model: Model, inputs: Inputs, time: ArrayLike) -> Signal:
+    """Torque [N.m] at the shaft that the inputs of a current or torque drive make at each `time` [s]."""
+    value = {**NEUTRAL, **model.values}
+    drive = model.actuator.drive
+    per_input = value["torque_scale"] if drive == "torque" else value["gear_ratio"] * value["torque_constant"]
+    command = inputs.command if inputs.enabled is None else np.where(inputs.enabled, inputs.command, 0.0)
+    place = np.searchsorted(inputs.time, np.asarray(time, dtype=float), side="right") - 1
+    return np.asarray(per_input * np.where(place < 0, 0.0, command[np.maximum(place, 0)]))
 
 
 def refuse_unsimulated(model: Model, simulated: Signal, times: Signal) -> None:

@@ -32,6 +32,11 @@ class Columns:
             raise InputError(f"{self.name} has {cell!r} as {column} in row {row}, expected a finite number. Repair it.")
         return np.frombuffer(self.cells[column], np.float64)
 
+    @property
+    def count(self) -> int:
+        """How many numbers it holds."""
+        return sum(len(values) for values in self.cells.values())
+
     def listed(self) -> str:
         """Every column, for a message to a person."""
         return ", ".join(self.header)

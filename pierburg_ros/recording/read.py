@@ -18,7 +18,7 @@ from pierburg_ros.recording.formats import format_of
 from pierburg_ros.recording.formats.messages import Bag, Wanted
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
-from pierburg_ros.recording.signal_map import SignalMap, signal_map
+from pierburg_ros.recording.signal_map import Given, SignalMap, signal_map
 from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, SIGNALS, TIME, in_order, last_name
 from pierburg_ros.recording.tables import Tables, read_tables, tabulated
 from pierburg_ros.recording.topics import TICKS, Found, Topics
@@ -42,12 +42,12 @@ def read_recording(
     *,
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
-    signals: str | Path | SignalMap | None = None,
+    signals: Given = None,
     preferred: Collection[str] = (),
 ) -> Recording:
     """The recording at `path`.
 
-    `signals` is a signal map or its file; `topics` names the topic (in a CSV the column) of a signal, e.g.
+    `signals` is a signal map, its file or its content; `topics` names the topic (in a CSV the column) of a signal, e.g.
     {"duty": "/bench/pwm"}, in place of the map's; `time` chooses the clock, one of stamp, clock, publish and log,
     where the best one recorded is not wanted. `preferred` are the input and the quantity to take where the recording
     holds several, e.g. ("current", "speed").

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError, printable
 from pierburg_ros.recording.columns import FORM, Columns
 from pierburg_ros.recording.formats import format_of
+from pierburg_ros.recording.formats.csv_table import MOST_CELLS
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.signal_map import SignalMap, TimeSource
@@ -43,7 +44,17 @@ def read_tables(path: Path, chosen: SignalMap) -> Tables:
     folder = path if path.is_dir() else path.parent
     own = None if path.is_dir() else columns_of(path, chosen)
     named = dict.fromkeys(source.files for source in chosen.sources.values() if source.files)
-    return Tables(own, {files: tuple(columns_of(folder / name, chosen) for name in files) for files in named})
+    read: dict[str, Columns] = {}
+    for name in dict.fromkeys(name for files in named for name in files):
+        read[name] = columns_of(folder / name, chosen)
+        check_cells(path.name, [own, *read.values()])
+    return Tables(own, {files: tuple(read[name] for name in files) for files in named})
+
+
+def check_cells(name: str, tables: Iterable[Columns | None]) -> None:
+    """Refuse tables that together hold more than one may."""
+    if sum(table.count for table in tables if table is not None) > MOST_CELLS:
+        raise InputError(f"{name} has more than {MOST_CELLS:,} numbers in its files, expected fewer. Give fewer parts.")
 
 
 def columns_of(path: Path, chosen: SignalMap) -> Columns:

@@ -14,6 +14,8 @@ DEFINITIONS = {
     "bench/msg/Command": "std_msgs/Header header\nuint64 micros\nbench/Pwm pwm\n",
     "bench/msg/Pwm": "float32[4] data\nbool on\n",
     "bench/msg/Board": "bench/Channel[] channels\nstring note\nint16 counts\n",
+    "bench/msg/DynamicState": "string[] frames\nstring[] joint_names\nbench/Interfaces[] interface_values\n",
+    "bench/msg/Interfaces": "string[] interface_names\nfloat64[] values\n",
     "bench/msg/Channel": "string name\nfloat64 volts\n",
 }
 

@@ -13,7 +13,9 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-from pierburg_ros.plant.decode import decoded
+from pierburg_ros.plant.decode import decoded, turned
+from pierburg_ros.plant.simulate import motor_torque
+from pierburg_ros.plant.torques.missing import missing
 
 SPOT = 0.032
 """Width of the bins in which tight spots are looked for, as a share of the travel. Derived: the narrowest that a blind
@@ -59,7 +61,33 @@ class MissingTorque:
 
 
 def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
-    """What the load torque of `model` lacks.
+    """What the load torque of `model` lacks."""
+    return _of_motion(data, run, model) if run.shooting is not None else _of_error(data, run, model)
+
+
+def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
+    """From the measured motion alone, inertia included, where a simulation does not keep to it."""
+    own = data.scales
+    instant = INSTANT * own.time
+    grid = np.arange(run.time[0], run.time[-1], instant)
+    shown = _averaged(run.time, turned(model, run.time, run.measured, run.quantity), grid)
+    velocity = np.gradient(shown, instant)
+    acceleration = np.gradient(velocity, instant)
+    motor = _averaged(run.time, motor_torque(model, run.inputs, run.time), grid)
+    torque = missing(model.record()[0], motor, grid, shown, velocity, acceleration)
+    moving = np.abs(velocity) > MOVING * own.angle / own.time
+    return MissingTorque(
+        time=grid[moving] / own.time,
+        angle=shown[moving] / own.angle,
+        velocity=velocity[moving] * own.time / own.angle,
+        torque=torque[moving] / own.torque,
+        gear_ratio=model.values.get("gear_ratio", 1.0) * own.angle,
+        end=float(run.time[-1]) / own.time,
+    )
+
+
+def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
+    """From the error of a simulation.
 
     While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque). This is
     equation (6) of the paper without the inertia, which is out of reach (time constant 15 us).

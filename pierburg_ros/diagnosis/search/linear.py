@@ -31,13 +31,13 @@ def promised(
     Each start is simulated once on top of `base`. What a re-fit of the base can change is projected out. Two starts
     that differ in phase alone count as one with a free phase.
     """
-    projected = _projection(base)
+    projected = projection(base)
     residual = projected(base.solution.residual)
     found = []
     for group in _in_quadrature(starts, variant):
         columns, used = [], []
         for start in group:
-            changed = _change(estimator, base, variant, start)
+            changed = difference(estimator, base, variant, start)
             if changed is not None:
                 columns.append(changed)
                 used.append(start)
@@ -52,14 +52,14 @@ def promised(
 
 def promised_by_drift(fit: Fit) -> float:
     """The chi2 that one linear step from `fit` promises."""
-    left = _projection(fit)(fit.solution.residual)
+    left = projection(fit)(fit.solution.residual)
     return float(left @ left)
 
 
 def largest_mark(estimator: Estimator, base: Fit, variant: Variant, starts: Sequence[Start]) -> float:
     """The largest sum of squares [noise^2] that a start leaves in the signal after a linear re-fit of `base`."""
-    projected = _projection(base)
-    changes = (_change(estimator, base, variant, start) for start in starts)
+    projected = projection(base)
+    changes = (difference(estimator, base, variant, start) for start in starts)
     marks = (projected(change) for change in changes if change is not None)
     return max((float(mark @ mark) for mark in marks), default=0.0)
 
@@ -119,7 +119,7 @@ def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, floa
     return [(estimator.chi2_at(fit.explanation, values), values) for values in moved]
 
 
-def _change(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
+def difference(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
     """What an effect added to `base` changes in the training samples [noise]; None where it cannot be added."""
     try:
         return base.solution.residual - estimator.residual(*_added(base, variant, start))
@@ -138,7 +138,7 @@ def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | N
     return with_effect(base.model), switch
 
 
-def _projection(fit: Fit) -> Callable[[Signal], Signal]:
+def projection(fit: Fit) -> Callable[[Signal], Signal]:
     """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
     basis = np.linalg.qr(fit.solution.jacobian)[0]
     return lambda residual: residual - basis @ (basis.T @ residual)

@@ -38,6 +38,7 @@ def header_of(name: str, table: Iterator[tuple[int, list[str]]], delimiter: str)
     if not first:
         raise InputError(f"{name} is empty, expected a header and rows. Record again.")
     header = [cell.strip() for cell in first]
+    header[0] = header[0].removeprefix("#").lstrip()  # as NumPy writes it
     if any(is_number(cell) for cell in header):
         raise InputError(
             f"{name} has no header (its first row is {delimiter.join(first)[:60]}), {FORM}."

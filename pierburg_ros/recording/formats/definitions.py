@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,10 +16,10 @@ from pierburg_ros.errors import InputError
 
 Description: TypeAlias = Any
 """What a field is, as rosbags tells it: a kind of node, and what belongs to it."""
-PARSERS: dict[str, Callable[[str, str], dict[str, Any]]] = {
-    "ros2msg": get_types_from_msg,
-    "ros2idl": lambda text, _: get_types_from_idl(text),
-}
+SEPARATOR = re.compile(r"^={80}\nIDL: .*\n", flags=re.MULTILINE)
+"""What stands before each type of a definition in IDL."""
+INCLUDE = re.compile(r"^#include .*$", flags=re.MULTILINE)
+"""A line of IDL that names another file; all that it names stands in the definition."""
 HEADER = "std_msgs/msg/Header"
 LONGEST = 1 << 18
 """Characters of a definition at most; those of the largest types of ROS, with all that they hold, have 20,000."""
@@ -35,6 +36,18 @@ class Definition:
 
 
 UNDEFINED = Definition()
+
+
+def types_from_idl(text: str, _: str) -> dict[str, Any]:
+    """The types of a definition in IDL, those of each of its files."""
+    types: dict[str, Any] = {}
+    for part in SEPARATOR.split(text):
+        if part.strip():
+            types.update(get_types_from_idl(INCLUDE.sub("", part)))
+    return types
+
+
+PARSERS: dict[str, Callable[[str, str], dict[str, Any]]] = {"ros2msg": get_types_from_msg, "ros2idl": types_from_idl}
 
 
 @lru_cache(maxsize=64)

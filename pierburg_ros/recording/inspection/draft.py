@@ -27,7 +27,8 @@ def draft(name: str, guesses: Iterable[Guess], time: TimeGuess | None, is_table:
     for signal in OPTIONAL:
         lines += [entry(each, place > 0) for place, each in enumerate(found.get(signal, [])[: 1 + MOST_OTHERS])]
     if time is not None:
-        column = json.dumps(time.columns[0] if len(time.columns) == 1 else list(time.columns))
+        names = [quoted(name) for name in time.columns]
+        column = names[0] if len(names) == 1 else f"[{', '.join(names)}]"
         unit = f", unit: {time.unit}" if len(time.columns) == 1 else ""
         lines.append(f"time: {{column: {column}{unit}}}  # {printable(time.reason)}")
     elif is_table:
@@ -53,9 +54,11 @@ def group(found: dict[str, list[Guess]], signals: tuple[str, ...], wanted: str) 
 def entry(each: Guess, is_other: bool) -> str:
     """One line of the map."""
     place = "topic" if each.field.path else "column"
-    parts = [f"{place}: {json.dumps(each.field.name)}"]
+    parts = [f"{place}: {quoted(each.field.name)}"]
     if each.field.path:
-        parts.append(f"field: {json.dumps(each.field.path)}")
+        parts.append(f"field: {quoted(each.field.path)}")
+    if each.field.file:
+        parts.append(f"file: {quoted(each.field.file)}")
     if each.unit != "1":
         parts.append(f"unit: {each.unit}")
     if each.scale != 1.0:
@@ -63,3 +66,8 @@ def entry(each: Guess, is_other: bool) -> str:
     if each.offset:
         parts.append(f"offset: {each.offset!r}")
     return f"{'# ' if is_other else ''}{each.signal}: {{{', '.join(parts)}}}  # {printable(str(each))}"
+
+
+def quoted(name: str) -> str:
+    """A name in quotes, for YAML; what does not print stands as an escape."""
+    return json.dumps(name, ensure_ascii=not name.isprintable())

@@ -13,10 +13,11 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError, printable
-from pierburg_ros.recording.decoding import DECODERS, DEEPEST, decoded
+from pierburg_ros.recording.decoding import DECODERS, decoded
 from pierburg_ros.recording.formats.cdr import JOINT_STATE
 from pierburg_ros.recording.formats.definitions import types_of
 from pierburg_ros.recording.formats.messages import Messages
+from pierburg_ros.recording.message_types import DEEPEST
 from pierburg_ros.recording.signal_map.field_path import names_beside
 
 MOST_LOOKED_AT = 1000
@@ -32,13 +33,14 @@ STAMP = {"sec", "nanosec"}
 class Field:
     """One number of a topic or of a table: where it stands, and values of it, shape (messages that were looked at,).
 
-    `path` is empty for a column.
+    `path` is empty for a column; `file` is the table that it stands in where there are several.
     """
 
     name: str
     type: str
     path: str
     values: Signal
+    file: str = ""
 
     @property
     def whole(self) -> bool:
@@ -91,6 +93,7 @@ def leaves(node: Any, path: str, around: list[Any], depth: int) -> Iterator[tupl
 def names_of(array: Any, around: list[Any]) -> list[str]:
     """The names that the elements of `array` go by, if a path can hold them; none where they have no names."""
     own = [each.name for each in array if isinstance(getattr(each, "name", None), str)]
-    found = own or next(names_beside(around[:-1]), [])
-    usable = all(name and printable(name) == name and not set(name) & set("[]") for name in found)
+    found = own or next((names for names in names_beside(around[:-1]) if len(names) == len(array)), [])
+    usable = all(name and printable(name) == name and not set(name) & set("[]'\"") for name in found)
+    usable = usable and not any(name.isdecimal() for name in found)
     return found if len(found) == len(array) == len(set(found)) and usable else []

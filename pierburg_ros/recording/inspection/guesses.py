@@ -17,10 +17,10 @@ WORDS = {
     "enabled": {"enabled", "enable", "powered", "on"},
     "temperature": {"temperature", "temp"},
     "duty": {"duty", "pwm", "throttle", "dutycycle"},
-    "setpoints": {"setpoint", "setpoints", "target", "reference", "ref", "desired", "goal", "wanted", "command", "cmd"},
-    "supply_voltage": {"vbat", "ubat", "battery", "vbus", "vdc", "udc", "supply", "vin"},
+    "setpoints": {"setpoint", "setpoints", "target", "reference", "ref", "desired", "goal", "wanted"},
+    "supply_voltage": {"vbat", "ubat", "bat", "batt", "battery", "vbus", "vdc", "udc", "supply", "vin"},
     "hall_voltage": {"hall", "adc", "ain", "analog", "sensor"},
-    "current": {"current", "cur", "iq", "amps", "amperes"},
+    "current": {"current", "cur", "iq", "i", "amps", "amperes"},
     "torque": {"torque", "tau", "effort", "moment"},
     "speed": {"velocity", "vel", "speed", "omega", "rpm", "dq", "qd"},
     "position": {"position", "pos", "angle", "theta", "phi", "encoder", "enc", "q", "winkel"},
@@ -31,6 +31,13 @@ UNIT_WORDS = {
     "ma": "mA", "mnm": "mN.m", "nm": "N.m", "volt": "V", "degc": "degC", "counts": "counts", "ticks": "counts",
 }  # fmt: skip
 """Words in a name that tell a unit."""
+SIGNAL_OF_UNIT = {
+    "percent": "duty", "deg": "position", "rad": "position", "rpm": "speed", "mA": "current", "mN.m": "torque",
+    "N.m": "torque", "degC": "temperature",
+}  # fmt: skip
+"""What a unit speaks for where no other word does."""
+COMMANDS = {"command", "commands", "cmd"}
+"""Words that speak for what is wanted: of a position, or a duty."""
 TIMES = {"sec", "nanosec", "secs", "nsecs", "micros", "millis", "stamp", "timestamp", "time", "seq", "us", "ns", "ms"}
 """Words in the name of a time or a number of messages, which is no signal."""
 TURN = 2.0 * pi
@@ -71,26 +78,36 @@ def guess(field: Field) -> Guess | None:
         return None
     own, outer = words(field.path), words(last_name(field.name))
     last = last | outer if field.path == "data" else last
-    for rank, names in enumerate((last, own, own | outer | words(field.name))):
+    every = last | own | outer | words(field.name)
+    for rank, names in enumerate((last, own | last, every)):
         signal = signal_named(names, field.limits[1])
         if signal is not None:
-            return known_as(field, signal, rank, own | outer)
-    return by_range(field)
+            return known_as(field, signal, rank, last | own | outer)
+    ranged = by_range(field)
+    is_command = every & COMMANDS and (ranged is None or ranged.signal != "duty")
+    return known_as(field, "setpoints", BY_RANGE, last | own) if is_command else ranged
 
 
 def signal_named(names: set[str], largest: float) -> str | None:
     """The signal that words in a name speak for; a voltage is a sensor's or the supply by its `largest` value."""
     for signal, known in WORDS.items():
         if names & known:
-            return "applied_duty" if signal == "duty" and "applied" in names else signal
+            applied, wanted = signal == "duty" and "applied" in names, signal == "position" and names & COMMANDS
+            return "applied_duty" if applied else "setpoints" if wanted else signal
     if names & {"voltage", "volts", "volt"}:
         return "hall_voltage" if largest <= 6.0 else "supply_voltage"
-    return None
+    return next((SIGNAL_OF_UNIT[unit] for unit in units_in(names) if unit in SIGNAL_OF_UNIT), None)
+
+
+def units_in(names: set[str]) -> list[str]:
+    """The units among words."""
+    return [UNIT_WORDS[name] for name in sorted(names) if name in UNIT_WORDS]
 
 
 def words(name: str) -> set[str]:
-    """The words in a name, small: `motorPwm_L[2]` -> motor, pwm, l."""
-    return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
+    """The words in a name, small, whole and parted at capitals: `motorPwm_L` -> motorpwm, motor, pwm, l."""
+    found = re.findall(r"[^\W\d_]+", name) + re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)
+    return {word.lower() for word in found} | ({"percent"} if "%" in name else set())
 
 
 def known_as(field: Field, signal: str, rank: int, names: set[str]) -> Guess | None:
@@ -98,9 +115,10 @@ def known_as(field: Field, signal: str, rank: int, names: set[str]) -> Guess | N
     if signal not in SIGNALS or (signal == "setpoints" and field.type == JOINT_STATE):
         return None
     low, high = field.limits or (0.0, 0.0)
-    named = next((UNIT_WORDS[name] for name in sorted(names) if name in UNIT_WORDS), "")
+    named = next(iter(units_in(names)), "")
     unit, scale, offset = in_unit(field, signal, named, max(abs(low), abs(high)))
     told = "JointState, " if field.type == JOINT_STATE else ""
+    told += "a torque or a current as its driver says, " if told and signal == "torque" else ""
     return Guess(field, signal, unit, scale, offset, f"{told}{low:.4g} to {high:.4g}", rank)
 
 

@@ -73,7 +73,7 @@ def unit_guess(name: str, values: Signal) -> tuple[str, str]:
     """The unit of a time, and why."""
     found = UNIT.search(name)
     if found and found[1].lower() in UNITS:
-        return UNITS[found[1].lower()], "named so"
+        return UNITS[found[1].lower()], "by its name"
     for least, unit in SINCE_1970:
         if values[0] >= least:
             return unit, f"counts {unit} since 1970"

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 PATH = re.compile(r"[A-Za-z]\w*(\[[^\[\]]+\])*(\.[A-Za-z]\w*(\[[^\[\]]+\])*)*")
 STEP = re.compile(r"(?P<field>\w+)|\[(?P<element>[^\[\]]+)\]")
+QUOTES = "'\""
 LONGEST = 300
 """Characters of a path at most."""
 
@@ -44,11 +45,14 @@ def field_path(written: str) -> FieldPath:
 
 
 def step_of(part: re.Match[str]) -> Step:
-    """One step; a whole number in brackets is a place, anything else a name."""
+    """One step; a whole number in brackets is a place, anything else a name, and so is what stands in quotes."""
     if part["field"] is not None:
         return part["field"]
-    element = part["element"].strip().strip("'\"")
-    return int(element) if element.isdecimal() and len(element) < 10 else Named(element)
+    element = part["element"]
+    if element.isdecimal() and len(element) < 10:
+        return int(element)
+    quoted = len(element) > 2 and element[0] == element[-1] and element[0] in QUOTES
+    return Named(element[1:-1] if quoted else element)
 
 
 def value_at(message: Any, path: FieldPath) -> Any:

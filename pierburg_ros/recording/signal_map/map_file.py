@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import Any
+from typing import Any, TypeAlias
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import Document, parsed, text_of
@@ -28,9 +28,13 @@ MOST_FILES = 1000
 """Parts of a table at most."""
 
 
-def signal_map(path: str | Path | SignalMap | None, named: Mapping[str, str]) -> SignalMap:
-    """The map in the file at `path`, with the topics or columns `named` by signal in place of its own."""
-    found = path if isinstance(path, SignalMap) else SignalMap() if path is None else read_signal_map(path)
+Given: TypeAlias = "str | Path | Mapping[str, Any] | SignalMap | None"
+"""A signal map, the path of its file, or its content."""
+
+
+def signal_map(given: Given, named: Mapping[str, str]) -> SignalMap:
+    """The map that is `given`, with the topics or columns `named` by signal in place of its own."""
+    found = given if isinstance(given, SignalMap) else SignalMap() if given is None else read_signal_map(given)
     sources, time = dict(found.sources), found.time
     for name, place in named.items():
         signal = signal_of(name)
@@ -46,22 +50,25 @@ def signal_map(path: str | Path | SignalMap | None, named: Mapping[str, str]) ->
     return replace(found, sources=sources, time=time, left_out=found.left_out - set(sources))
 
 
-def read_signal_map(path: str | Path) -> SignalMap:
-    """The signal map in the file at `path`."""
-    text = BARE_PATH.sub(r'\1"\2"', text_of(path, "a signal map"))
-    document = parsed(text, str(path), "a signal map")
+def read_signal_map(given: str | Path | Mapping[str, Any]) -> SignalMap:
+    """The signal map in a file, or of its content."""
+    if isinstance(given, Mapping):
+        name, document = "signals", Document(dict(given), None)
+    else:
+        name, text = str(given), BARE_PATH.sub(r'\1"\2"', text_of(given, "a signal map"))
+        document = parsed(text, name, "a signal map")
     content = document.content
     if not isinstance(content, dict) or not content:
-        raise InputError(f"{path} is no signal map, expected lines like 'duty: {{topic: /pwm, field: data}}'.")
+        raise InputError(f"{name} is no signal map, expected lines like 'duty: {{topic: /pwm, field: data}}'.")
     sources, time, left_out = {}, None, set()
-    for signal, given in content.items():
-        entry = Entry(document, f"{path}{document.line(signal)}: {signal}", signal, given)
+    for signal, entered in content.items():
+        entry = Entry(document, name, str(signal), entered)
         if signal == TIME:
             time = entry.time()
         elif signal not in SIGNALS:
             known = (*SIGNALS, TIME)
             raise InputError(f"{entry.origin} is no signal, expected one of {', '.join(known)}.{near(signal, known)}")
-        elif given is None:
+        elif entered is None:
             left_out.add(signal)
         else:
             sources[signal] = entry.source()
@@ -71,11 +78,12 @@ def read_signal_map(path: str | Path) -> SignalMap:
 class Entry:
     """What a map gives for one signal, checked."""
 
-    def __init__(self, document: Document, origin: str, signal: str, given: Any) -> None:
-        self.origin = origin
+    def __init__(self, document: Document, name: str, signal: str, given: Any) -> None:
+        self.document = document
+        self.name = name
         self.signal = signal
         self.given = given
-        self.line = document.line
+        self.origin = self.place()
 
     def source(self) -> Source:
         """Where the signal comes from."""
@@ -201,9 +209,9 @@ class Entry:
             )
         return tuple(names)
 
-    def place(self, key: str) -> str:
-        """Where `key` stands."""
-        return f"{self.origin.rpartition(' line ')[0]}{self.line(self.signal, key)}: {self.signal}"
+    def place(self, *key: str) -> str:
+        """Where the signal, or a key of it, stands."""
+        return f"{self.name}{self.document.line(self.signal, *key)}: {self.signal}"
 
     def wrong(self, key: str, found: str, expected: str) -> InputError:
         """What to say of the value under `key`."""

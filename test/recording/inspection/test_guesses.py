@@ -41,6 +41,12 @@ def field(name, path, low, high, whole=False, kind="bench/msg/X"):
         (field("motor_enabled", "", 0, 1, whole=True), "enabled", "1"),
         (field("ch3", "", 3, 4001, whole=True), "hall_voltage", "counts"),
         (field("ch1", "", -100, 100), "duty", "percent"),
+        (field("/cmd", "data", -1, 1), "duty", "1"),
+        (field("position_cmd", "", -1, 1), "setpoints", "rad"),
+        (field("/command", "data", 0, 2), "setpoints", "rad"),
+        (field("Strom [mA]", "", -300, 300), "current", "mA"),
+        (field("n_rpm", "", -300, 300), "speed", "rpm"),
+        (field("PWM [%]", "", -0.5, 0.5), "duty", "percent"),
     ],
 )
 def test_a_number_is_taken_for(given, signal, unit):

@@ -50,6 +50,21 @@ def test_a_table_of_foreign_columns_is_listed_and_its_draft_works(tmp_path):
     np.testing.assert_allclose(recording.measured, 20 * np.arange(100) * 3.3 / 4096, atol=1e-12)
 
 
+def test_a_folder_of_tables_is_listed_and_its_draft_works(tmp_path):
+    folder = tmp_path / "bench"
+    folder.mkdir()
+    (folder / "motor.csv").write_text("t_ms,pwm,angle\n" + "".join(f"{k},{k % 7 / 10},{k / 50}\n" for k in range(50)))
+    (folder / "battery.csv").write_text("t_ms,vbat\n0,13.5\n40,13.1\n")
+    found = inspect(folder)
+    assert found.recording is None and "is a folder of tables, expected a signal map" in found.problem
+    assert [topic.name for topic in found.topics][:2] == ["battery.csv t_ms", "battery.csv vbat"]
+    recording = drafted(tmp_path, folder)
+    assert recording.quantity == "position" and recording.time[-1] == pytest.approx(0.049)
+    np.testing.assert_allclose(recording.supply_voltage.time, [0.0, 0.04])
+    used = {topic.name: topic.read_as for topic in inspect(folder, signals=tmp_path / "drafted.yaml").topics}
+    assert used["motor.csv pwm"] == "duty" and used["battery.csv vbat"] == "supply_voltage"
+
+
 def test_a_recording_that_reads_already_reads_the_same_by_its_draft(tmp_path, write_bag, run):
     path = write_bag(run())
     plain, again = read_recording(path), drafted(tmp_path, path)

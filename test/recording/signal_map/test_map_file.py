@@ -107,6 +107,13 @@ def test_a_bad_map_is_one_line(read, text, said):
     assert said in str(refused.value) and "\n" not in str(refused.value)
 
 
+def test_a_map_may_be_given_as_a_mapping():
+    found = signal_map({"duty": {"topic": "/a", "field": "data[2]"}, "temperature": None}, {})
+    assert found.sources["duty"].path.written == "data[2]" and found.left_out == {"temperature"}
+    with pytest.raises(InputError, match=r"^signals: duty found the scale 0, expected another number"):
+        signal_map({"duty": {"topic": "/a", "scale": 0}}, {})
+
+
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(InputError, match="does not exist, expected a signal map"):
         read_signal_map(tmp_path / "no.yaml")
