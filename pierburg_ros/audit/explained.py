@@ -102,7 +102,7 @@ class Fit:
         size = len(self.names)
         start, bound = np.zeros(size), np.full(size, FARTHEST)
         found = minimise(self._cost, start, -bound, bound, np.full(size, STEP), iterations, 1e-3)
-        model = self._model(found.point)
+        model = self.model(found.point)
         simulated = self.simulated(model)
         share = 1.0 - float(np.mean(np.square(found.residual[size:]))) if self.motion > 0.0 else 0.0
         agreement = agreed(self.angle, simulated, self.cuts)
@@ -116,23 +116,28 @@ class Fit:
 
     def share(self, model: Model) -> float:
         """Share of the motion that `model` explains."""
-        return 1.0 - float(np.mean(np.square(self._left(model)))) if self.motion > 0.0 else 0.0
+        return 1.0 - float(np.mean(np.square(self.left(model)))) if self.motion > 0.0 else 0.0
 
-    def _left(self, model: Model) -> Signal:
+    def left(self, model: Model) -> Signal:
         """What `model` leaves of each compared sample, in the root mean square of the motion."""
         left = (self.angle[:: self.stride] - self.simulated(model, self.stride)) / (self.motion or 1.0)
         return np.asarray(np.nan_to_num(left, nan=1e3, posinf=1e3, neginf=-1e3))
 
     def _cost(self, point: Signal) -> Signal:
-        left = self._left(self._model(point))
+        left = self.left(self.model(point))
         return np.concatenate([RELUCTANCE * math.sqrt(left.size) * point, left])
 
-    def _model(self, point: Signal) -> Model:
+    def model(self, point: Signal) -> Model:
+        """The actuator with its numbers moved by these logarithms."""
         values = {}
         for name, moved in zip(self.names, point, strict=True):
             least, most = self.nominal.range(name)
             values[name] = min(max(self.nominal.values[name] * math.exp(moved), least), most)
         return self.nominal.with_values(values)
+
+    def point(self, model: Model) -> Signal:
+        """The logarithms by which the numbers of `model` are moved."""
+        return np.array([math.log(model.values[name] / self.nominal.values[name]) for name in self.names])
 
     def simulated(self, model: Model, stride: int = 1) -> Signal:
         """Decoded angle at every `stride`th sample."""
