@@ -56,6 +56,7 @@ ROOMS = {
         "paper": {"fit"},
         "identify": {"fit", "identifiability", "paper"},
         "experiment": {"fit", "identify", "paper"},
+        "description": {"fit", "identifiability", "identify"},
     },
     "nodes": {"core": set()},
     "plant": {

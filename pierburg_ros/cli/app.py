@@ -46,6 +46,7 @@ COMMANDS = {
     "replay": Command("Simulate a recorded duty and compare with what was measured."),
     "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
     "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, and what each is read as."),
+    "actuator": Command("Describe an actuator; say what is implausible about a description."),
     "recover": Command("Make a cut recording whole for every reader."),
     "prove": Command("Seeded blind trials of the diagnosis."),
     "tune": Command("PIFLC gains and sets for a stated goal over a set of plants."),
@@ -161,6 +162,7 @@ identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
 inspect = standalone("inspect")
+actuator = standalone("actuator")
 recover = standalone("recover")
 prove = standalone("prove")
 tune = standalone("tune")
