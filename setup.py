@@ -7,7 +7,19 @@ from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
 NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
-COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "inspect", "actuator", "recover", "prove", "tune")
+COMMANDS = (
+    "demo",
+    "simulate",
+    "experiment",
+    "identify",
+    "replay",
+    "diagnose",
+    "inspect",
+    "actuator",
+    "recover",
+    "prove",
+    "tune",
+)
 # colcon and the build farm of ROS call `setup.py install` or `develop`, which put executables into lib/pierburg_ros
 # (setup.cfg), where `ros2 run pierburg_ros NAME` finds them. pip never does: with it they would crowd the path.
 FOR_ROS_RUN = (

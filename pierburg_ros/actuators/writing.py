@@ -9,6 +9,7 @@ import yaml
 
 from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.actuators.description import actuator_of
+from pierburg_ros.actuators.units import unit_of
 
 FIRST = ("name", "title", "drive", "load", "sensor", "motion", "joint")
 
@@ -20,7 +21,8 @@ def description_text(content: Mapping[str, Any], label: str) -> str:
     lines += [f"{key}: {_inline(content[key])}" for key in ("stops", "winding") if content.get(key)]
     lines.append("parameters:")
     for name, given in content["parameters"].items():
-        lines.append(f"  {name}: {_inline(given)}  # {UNITS[name][0]}, {UNITS[name][1]}")
+        unit, meaning = UNITS[name]
+        lines.append(f"  {name}: {_inline(given)}  # {unit_of(unit, content.get('motion', 'rotary'))}, {meaning}")
     if content.get("effects"):
         lines.append("effects:")
         lines += [f"  {effect}: {_inline(values)}" for effect, values in content["effects"].items()]

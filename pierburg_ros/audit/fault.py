@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Fault:
     """One signal that is not what it is read as.
 
-    `mend` is the line of the signal map that mends it (section 3 of docs/contract.md), or what to do where no line does.
+    `mend` is the line of the signal map that mends it (section 3 of docs/contract.md), or what to do where none does.
     """
 
     recording: str

@@ -31,8 +31,8 @@ def impossible(signals: Signals, nominal: Model, beyond: float = BEYOND) -> tupl
     fastest = nominal.scales.time
     if not CLOSEST <= signals.interval / fastest <= FARTHEST or signals.duration < fastest:
         return "time", (
-            f"Samples lie {signals.interval:.3g} s apart over {signals.duration:.3g} s, where the actuator crosses its travel"
-            f" in {fastest:.2g} s."
+            f"Samples lie {signals.interval:.3g} s apart over {signals.duration:.3g} s, where the actuator crosses its"
+            f" travel in {fastest:.2g} s."
         )
     actuator, supply = nominal.actuator, signals.inputs.supply_voltage
     if supply is not None and np.median(supply) > (most := nominal.range("supply_voltage")[1]):

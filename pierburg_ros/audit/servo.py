@@ -17,7 +17,7 @@ FOLLOWING = (0.01, 0.03, 0.1, 0.3)
 """Time constants with which a controlled shaft follows its setpoint, as shares of a second [s]. Chosen: a loop that is
 slower does not follow."""
 FOLLOWED = 0.9
-"""Share of the motion that a followed setpoint explains, at least. Chosen: a tenth is left to overshoot and friction."""
+"""Share of the motion that a followed setpoint explains, at least. Chosen: a tenth is left to overshoot."""
 BETTER = 0.5
 """Share of what the actuator leaves unexplained that a followed setpoint may leave. Chosen: half."""
 UNITY = 0.15

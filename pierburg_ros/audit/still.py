@@ -21,8 +21,8 @@ noise span 8; slow drift of a sensor is left room."""
 def still(signals: Signals, nominal: Model) -> list[Fault] | None:
     """What is wrong with signals in which nothing moves; None where something does.
 
-    A shaft may be stuck, and a weak input may leave it where it is. But where every reading is the same to the last digit
-    while such inputs would move the actuator far, the sensor is not read.
+    A shaft may be stuck, and a weak input may leave it where it is. But where every reading is the same to the last
+    digit while such inputs would move the actuator far, the sensor is not read.
     """
     span = float(np.ptp(signals.measured))
     if span > MOVED * noise_of(signals.time, signals.measured):
@@ -39,7 +39,8 @@ def still(signals: Signals, nominal: Model) -> list[Fault] | None:
             signals.name,
             signals.quantity,
             "constant",
-            f"It reads {signals.measured[0]:.4g} throughout, while the {signals.input} runs from {low:.3g} to {high:.3g}.",
+            f"It reads {signals.measured[0]:.4g} throughout, while the {signals.input} runs from {low:.3g} to"
+            f" {high:.3g}.",
             f"name the topic of the sensor: `{signals.quantity}: {{topic: ...}}`",
         )
     ]

@@ -12,16 +12,17 @@ from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
 
 SHARPER = 10
-"""Samples over which a velocity is told whose changes are compared. Chosen: 20 ms at 500 Hz; half of it drowns in noise."""
+"""Samples over which a velocity is told whose changes are compared. Chosen: 20 ms at 500 Hz; half of it drowns in
+noise."""
 EARLY = 2.5
 """Samples by which measured changes of velocity must come before the simulated ones. Derived: an input recorded one
 sample late, as one sample may be, and the rounding of the lag."""
 PLAINLY = 0.9
-"""Share of the best agreement that is left without a shift, at most. Measured: 30 clean recordings (n = 30) keep 0.97 or
-more where their best lag is early."""
+"""Share of the best agreement that is left without a shift, at most. Measured: clean recordings keep 0.97 or more where
+their best lag is early (n = 30)."""
 SEEN = 0.4
-"""Correlation of changes of velocity from which a lag is seen. Measured: in clean recordings (n = 52) with less the best
-lag is anywhere."""
+"""Correlation of changes of velocity from which a lag is seen. Measured: with less the best lag lies anywhere in clean
+recordings (n = 52)."""
 SELDOM = 5.0
 """Sample intervals between two inputs from which the input is recorded too seldom. Chosen: a controller that runs at a
 fifth of the sensor's rate is rare, and one that is early besides is not run at that rate."""

@@ -41,8 +41,8 @@ def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:
     name = max(names, key=lambda each: abs(math.log(values[1][each] / values[0][each])))
     evidence = (
         f"Its own numbers explain {100 * other[1].share:.0f} % of the motion, those of {first[0].name}"
-        f" {100 * first[1].share:.0f} %; one set of numbers leaves {100 * (1.0 - min(shares)):.0f} %. They differ most in"
-        f" {name}: {values[0][name]:.3g} there, {values[1][name]:.3g} here."
+        f" {100 * first[1].share:.0f} %; one set of numbers leaves {100 * (1.0 - min(shares)):.0f} %. They"
+        f" differ most in {name}: {values[0][name]:.3g} there, {values[1][name]:.3g} here."
     )
     what = f"of another actuator than {first[0].name}, or of one that was changed"
     return Fault(other[0].name, "recording", what, evidence, "diagnose the recordings one by one")
@@ -57,8 +57,8 @@ def common(first: Pair, other: Pair, nominal: Model) -> list[float]:
         left = [fit.left(fit.model(point)) for fit in fits]
         return np.concatenate([RELUCTANCE * point, *(each / math.sqrt(each.size) for each in left)])
 
-    begin = min((fit.point(found.model) for fit, (_, found) in zip(fits, (first, other), strict=True)),
-                key=lambda point: float(np.sum(np.square(cost(point)))))
+    begins = (fit.point(found.model) for fit, (_, found) in zip(fits, (first, other), strict=True))
+    begin = min(begins, key=lambda point: float(np.sum(np.square(cost(point)))))
     bound = np.full(size, FARTHEST)
     found = minimise(cost, np.clip(begin, -bound, bound), -bound, bound, np.full(size, STEP), FULL, 1e-3)
     return [fit.share(fit.model(found.point)) for fit in fits]

@@ -38,7 +38,9 @@ def actuator(
     action: Annotated[Action, typer.Argument(help="new: write a description. check: say what is implausible.")],
     file: Annotated[Path, typer.Argument(help="The description (YAML); to check also the name of a shipped one.")],
     from_recording: Annotated[Path | None, typer.Option(help="Start from what this recording tells.")] = None,
-    like: Annotated[str | None, typer.Option(help="Actuator whose numbers stand where the recording tells none.")] = None,
+    like: Annotated[
+        str | None, typer.Option(help="Actuator whose numbers stand where the recording tells none.")
+    ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it is there.")] = False,
     signals: SignalsOption = None,
     topic: TopicOption = None,
@@ -48,8 +50,8 @@ def actuator(
     """Describe an actuator, from answers or from a recording, or check a description.
 
     `new` asks what it needs, or identifies it from a recording and marks what it guessed.
-    `check` derives speeds, torques and times, names numbers that look like slips, and says which numbers no recording of
-    its signals can tell.
+    `check` derives speeds, torques and times, names numbers that look like slips, and says which numbers no recording
+    of its signals can tell.
     """
     console = terminal()
     if action is Action.check:

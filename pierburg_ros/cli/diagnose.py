@@ -14,7 +14,7 @@ from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.library.diagnosing import Diagnosis
+from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
 from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
@@ -31,11 +31,16 @@ def diagnose(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
+    budget: Annotated[float, typer.Option(min=1.0, help="Seconds after which the best verdict yet is given.")] = (
+        USUAL_BUDGET
+    ),
+    thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
+    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
+    verdict yet.
     """
     nominal = chosen_or_valve(model, actuator)
     measured = [
@@ -43,7 +48,7 @@ def diagnose(
         for path in recordings
     ]
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs, force)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, force)
         diagnosis.write_into(folder)
     terminal().print(
         shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
@@ -51,7 +56,11 @@ def diagnose(
 
 
 def diagnosed_with_progress(
-    recordings: Sequence[Recording], nominal: Model, jobs: int | None = None, force: bool = False
+    recordings: Sequence[Recording],
+    nominal: Model,
+    jobs: int | None = None,
+    budget: float | None = USUAL_BUDGET,
+    force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
@@ -60,7 +69,7 @@ def diagnosed_with_progress(
         def tell(tried: str) -> None:
             bar.update(task, advance=1, description=tried)
 
-        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs, force=force)
+        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs, budget=budget, force=force)
 
 
 def _progress() -> Progress:

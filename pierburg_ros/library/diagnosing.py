@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Progress = Callable[[str], None]
+USUAL_BUDGET = 120.0
+"""Time [s] after which the best verdict yet is given unless told otherwise."""
 
 
 @dataclass(frozen=True)
@@ -119,14 +121,17 @@ def diagnose(
     model: ModelLike | None = None,
     progress: Progress | None = None,
     jobs: int | None = None,
+    budget: float | None = USUAL_BUDGET,
     force: bool = False,
 ) -> Diagnosis:
     """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
 
     Recordings of one actuator or their paths; compared with `model`, or with `actuator` as described (by default
     the Pierburg valve). `progress` is told in words what is being tried. `jobs` is the number of fits at a time, by
-    default one for each core. Takes seconds to minutes. Where signals are not what they are read as, nothing is
-    concluded, and `document.input_faults` says so; `force` goes on. InputError where a recording cannot be used.
+    default one for each core. Takes seconds to minutes: after `budget` [s], or Ctrl-C, the best verdict
+    yet is given and marked as such; None takes what it takes. Where signals are not what
+    they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes on. InputError where a
+    recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
         print(diagnosis.verdict, diagnosis.effects)
@@ -134,4 +139,4 @@ def diagnose(
     """
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = recordings_of(recordings, nominal.actuator)
-    return Diagnosis(diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs, force))
+    return Diagnosis(diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs, budget, force))

@@ -80,23 +80,41 @@ def _of_motor(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
     needed = _needed(actuator, value)
     inertial = value["total_inertia"] * (scales.angle / scales.time) / scales.torque
     yield Derived(
-        "no-load speed", scales.angle / scales.time, unit_of("rad/s", motion), 0.0, math.inf, "supply over gear and constant."
+        "no-load speed",
+        scales.angle / scales.time,
+        unit_of("rad/s", motion),
+        0.0,
+        math.inf,
+        "supply over gear and constant.",
     )
-    yield Derived("stall torque", scales.torque, unit_of("N.m", motion), 0.0, math.inf, "gear, constant and stall current.")
+    yield Derived(
+        "stall torque", scales.torque, unit_of("N.m", motion), 0.0, math.inf, "gear, constant and stall current."
+    )
     yield Derived(
         "stall current", scales.current, "A", FAINTEST, FIERCEST, "It is supply_voltage over armature_resistance."
     )
     yield Derived(
-        "time to cross the travel", scales.time, "s", QUICKEST, SLOWEST,
+        "time to cross the travel",
+        scales.time,
+        "s",
+        QUICKEST,
+        SLOWEST,
         "It is the travel over the no-load speed, which is supply_voltage over gear_ratio and torque_constant.",
     )
     yield Derived(
-        "stall torque over load and friction", scales.torque / needed if needed else 1.0, "1", WEAKEST,
+        "stall torque over load and friction",
+        scales.torque / needed if needed else 1.0,
+        "1",
+        WEAKEST,
         STRONGEST if _is_loaded(value) else math.inf,
         "A motor that is weaker does not move its load, and one that is far stronger was not built for it.",
     )
     yield Derived(
-        "time to run up over time to cross", inertial / scales.time, "1", LIGHTEST, HEAVIEST,
+        "time to run up over time to cross",
+        inertial / scales.time,
+        "1",
+        LIGHTEST,
+        HEAVIEST,
         "total_inertia times the no-load speed over the stall torque is the time in which the motor runs up.",
     )
 

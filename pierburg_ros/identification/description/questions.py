@@ -8,6 +8,7 @@ from typing import Any
 
 from pierburg_ros.actuators.actuator import UNITS
 from pierburg_ros.actuators.description import needed_parameters
+from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError
 
 RANGE = 10.0
@@ -47,7 +48,8 @@ def answered(ask: Ask) -> dict[str, Any]:
     parameters = {}
     for name in needed_parameters(content["drive"], content["load"], content["sensor"]):
         unit, meaning = UNITS[name]
-        nominal = number(name, ask(Question(name, f"{name} [{unit}], {meaning}")))
+        shown = unit_of(unit, content["motion"])
+        nominal = number(name, ask(Question(name, f"{name} [{shown}], {meaning}")))
         origin = ask(Question(f"{name}.origin", "  where that number comes from", (), "guess"))
         parameters[name] = declared(name, nominal, origin)
     return {**content, "parameters": parameters}

@@ -7,8 +7,8 @@ from typing import Any
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.identify import Identification, identify
 from pierburg_ros.identification.identifiability import Finding
+from pierburg_ros.identification.identify import Identification, identify
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
@@ -38,9 +38,7 @@ def identified(recording: Recording, start: Actuator, name: str, jobs: int | Non
     values = found.fitted.model.values
     stops = {"lower": start.lower_stop, "upper": start.upper_stop} if start.has_stops else None
     parameters = {each: _entry(found, start, each, recording.name) for each in start.parameters}
-    effects = {
-        effect: {own: values[f"{effect}.{own}"] for own in numbers} for effect, numbers in start.effects.items()
-    }
+    effects = {effect: {own: values[f"{effect}.{own}"] for own in numbers} for effect, numbers in start.effects.items()}
     content = {"name": name, "title": f"{name}, from {recording.name}", "drive": start.drive, "load": start.load}
     content |= {"sensor": start.quantity, "motion": start.motion}
     return {**content, **({"stops": stops} if stops else {}), "parameters": parameters, "effects": effects}

@@ -55,7 +55,11 @@ def _slips(actuator: Actuator) -> Iterator[tuple[str, str]]:
             changed = replace(parameter, default=other, minimum=low, maximum=high)
             likely = replace(actuator, parameters={**actuator.parameters, name: changed})
             if parameter.nominal > 0.0 and all(each.plausible for each in derived(likely)):
-                yield name, f"{parameter.nominal:g} {parameter.unit}: with {other:.4g} all is plausible (were they {written}?)."
+                yield (
+                    name,
+                    f"{parameter.nominal:g} {parameter.unit}: with {other:.4g} all is plausible"
+                    f" (were they {written}?).",
+                )
 
 
 def _of_signs(actuator: Actuator) -> Iterator[Remark]:
@@ -65,7 +69,9 @@ def _of_signs(actuator: Actuator) -> Iterator[Remark]:
             yield Remark(name, f"{parameter.nominal:g} {parameter.unit} is negative; expected a magnitude.")
     ends = [actuator.parameters.get(f"hall_voltage_{end}") for end in ("closed", "open")]
     if ends[0] is not None and ends[1] is not None and ends[0].nominal > ends[1].nominal:
-        yield Remark("hall_voltage_open", "It is below hall_voltage_closed: the sensor then falls while the shaft opens.")
+        yield Remark(
+            "hall_voltage_open", "It is below hall_voltage_closed: the sensor then falls while the shaft opens."
+        )
 
 
 def _of_ranges(actuator: Actuator) -> Iterator[Remark]:
