@@ -173,8 +173,9 @@ class Entry:
         try:
             unit = unit_of(written)
         except ValueError:
-            meant = [unit for unit in USUAL if unit.lower() == written.lower()]
-            hint = f" Did you mean {meant[0]}?" if meant else near(written, USUAL)
+            fitting = [unit for unit in USUAL if any(unit_of(unit).measures(each) for each in wanted)]
+            meant = [unit for unit in fitting if unit.lower() == written.lower()]
+            hint = f" Did you mean {meant[0]}?" if meant else near(written, fitting)
             raise self.wrong("unit", shown(written), self.units(wanted), hint) from None
         if not any(unit.measures(each) for each in wanted):
             raise self.wrong("unit", written, self.units(wanted))
