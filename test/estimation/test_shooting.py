@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -99,7 +101,7 @@ def test_a_current_driven_rotor_is_identified() -> None:
 
 
 def test_a_pendulum_seen_by_its_speed_is_simulated_from_an_angle_that_suits() -> None:
-    model = Model.nominal(by_speed())
+    model = Model.nominal(replace(PENDULUM.actuator, quantity="speed"))
     random = np.random.default_rng(1)
     time = np.arange(0.0, 8.0, 0.004)
     torque = random.uniform(-2.5, 2.5, 21)[(time / 0.4).astype(int)]
@@ -107,12 +109,6 @@ def test_a_pendulum_seen_by_its_speed_is_simulated_from_an_angle_that_suits() ->
     recording = Recording("speed", "speed", time, speed, Channel(time, torque), input="torque")
     data = data_of([recording], model)
     assert np.sqrt(np.mean(data.residual(model) ** 2)) < 1.1
-
-
-def by_speed():
-    from dataclasses import replace
-
-    return replace(PENDULUM.actuator, quantity="speed")
 
 
 def test_another_input_than_the_drive_asks_for_is_refused() -> None:

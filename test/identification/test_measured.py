@@ -23,7 +23,7 @@ def rotor_as_csv(source: Path, folder: Path) -> Path:
 
 
 @pytest.mark.skipif(not (DATA / "ak80").is_dir(), reason="the AK80 recordings (../shared/data) are not here")
-def test_one_run_of_the_pendulum_is_explained_five_times_better_once_identified() -> None:
+def test_one_run_of_the_pendulum_is_explained_four_times_better_once_identified() -> None:
     recording = pr.read(DATA / "ak80/ddp.csv")
     nominal = pr.compare(recording, pr.Model.nominal("ak80"))
     found = pr.identify(recording, actuator="ak80")
