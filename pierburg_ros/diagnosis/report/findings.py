@@ -52,8 +52,10 @@ from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 
 
-def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit]) -> Diagnosis:
-    """The whole document."""
+def document(
+    found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit], stopped: bool = False
+) -> Diagnosis:
+    """The whole document; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
@@ -68,7 +70,8 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequen
         input=actuator.input,
         motion=actuator.motion,
         verdict=conclusion.verdict,
-        summary=words.cautioned(short, words.warned(data, conclusion.verdict, text)),
+        summary=words.cautioned(short, words.warned(data, conclusion.verdict, words.provisional(text, stopped))),
+        stopped=stopped,
         effects=named,
         parameters=parameters_found,
         changes=changed,
