@@ -55,18 +55,18 @@ def mine() -> Recording:
 
 @pytest.mark.search
 def test_an_effect_that_the_simulator_lacks_is_named(mine):
-    real = recording({**OWN, **acting("load_dependent_friction")}, seed=5)
+    real = recording({**OWN, **acting("static_friction")}, seed=5)
     result = diagnose([real], NOMINAL, simulation=[mine])
     found = result.diagnosis
     assert found.verdict == "missing_physics"
-    assert [effect.id for effect in found.effects] == ["load_dependent_friction"]
-    assert found.effects[0].parameters["coefficient"].value == pytest.approx(0.1, abs=0.02)
+    assert [effect.id for effect in found.effects] == ["static_friction"]
+    assert found.effects[0].parameters["breakaway_torque"].value == pytest.approx(0.27, abs=0.03)
     assert not any(parameter.drifted for parameter in found.parameters.values())
     assert found.summary.startswith("Held against your simulator, not against the description: our equations reproduce")
     assert found.simulation.recordings == ["mine.csv"]
     assert found.simulation.rmse < 0.2 * NOISE < found.simulation.described_rmse
     assert result.model.actuator == NOMINAL.actuator
-    assert result.model.values["load_dependent_friction.coefficient"] == pytest.approx(0.1, abs=0.02)
+    assert result.model.values["static_friction.breakaway_torque"] == pytest.approx(0.27, abs=0.03)
 
 
 @pytest.mark.search
