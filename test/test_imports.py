@@ -15,7 +15,8 @@ ALLOWED = {
     "kernel": {"kernel_cache"},
     "parameter": {"errors"},
     "processes": {"errors"},
-    "workers": {"errors"},
+    "deadline": set(),
+    "workers": {"errors", "deadline"},
     "intake": {"errors"},
     "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
@@ -30,7 +31,7 @@ ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers"}
+ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers", "deadline"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}

@@ -47,7 +47,7 @@ COMMANDS = {
     "identify": Command("Static characteristic, step response and parameters from recordings."),
     "replay": Command("Simulate a recorded duty and compare with what was measured."),
     "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
-    "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, and what each is read as."),
+    "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, what each could be."),
     "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
     "recover": Command("Make a cut recording whole for every reader."),
     "prove": Command("Seeded blind trials of the diagnosis."),

@@ -15,7 +15,7 @@ from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, 
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.diagnosing import Diagnosis
+from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
 from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
@@ -42,10 +42,15 @@ def diagnose(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
+    budget: Annotated[float, typer.Option(min=1.0, help="Seconds after which the best verdict yet is given.")] = (
+        USUAL_BUDGET
+    ),
+    thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
+    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
+    verdict yet.
     """
     nominal = chosen_or_valve(model, actuator)
     if simulation_signals and not simulation:
@@ -57,7 +62,7 @@ def diagnose(
 
     measured, simulated = taken(recordings, signals), taken(simulation or (), simulation_signals or signals)
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs, simulated)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated)
         diagnosis.write_into(folder)
     terminal().print(
         shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
@@ -68,6 +73,7 @@ def diagnosed_with_progress(
     recordings: Sequence[Recording],
     nominal: Model,
     jobs: int | None = None,
+    budget: float | None = USUAL_BUDGET,
     simulation: Sequence[Recording] = (),
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
@@ -77,7 +83,9 @@ def diagnosed_with_progress(
         def tell(tried: str) -> None:
             bar.update(task, advance=1, description=tried)
 
-        return diagnosis_of(recordings, model=nominal, simulation=simulation or None, progress=tell, jobs=jobs)
+        return diagnosis_of(
+            recordings, model=nominal, simulation=simulation or None, progress=tell, jobs=jobs, budget=budget
+        )
 
 
 def _progress() -> Progress:

@@ -295,9 +295,15 @@ class Diagnosis(Part):
     quantity: Literal["hall_voltage", "position", "speed"]
     unit: str
     """Measured unit."""
+    input: Literal["duty", "current", "torque"] = "duty"
+    """What drives the actuator."""
+    motion: Literal["rotary", "linear"] = "rotary"
+    """Of a linear actuator every rad is a metre, and every N.m a newton."""
     verdict: Verdict
     summary: str
     """One paragraph that a technician can read."""
+    stopped: bool = False
+    """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
     effects: list[Effect] = []
     parameters: dict[str, BaseParameter] = {}
     changes: list[Change] = []
