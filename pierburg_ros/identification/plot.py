@@ -11,7 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from plotly.subplots import make_subplots
 
-from pierburg_ros.comparison.plot import COLOURS, LABELS
+from pierburg_ros.actuators.wording import quantity_title
+from pierburg_ros.comparison.plot import COLOURS
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
 from pierburg_ros.recording import Recording
@@ -95,10 +96,14 @@ def page(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
     heat = go.Heatmap(z=found.fitted.correlation, x=names, y=names, zmin=-1, zmax=1, texttemplate="%{z:.2f}")
     heat.colorscale = "RdBu"
     figure.add_trace(heat, row=3, col=2)
-    figure.update_yaxes(title_text=LABELS[recordings[0].quantity], row=1)
+    figure.update_yaxes(title_text=_title(found, recordings[0]), row=1)
     figure.update_xaxes(title_text="time [s], recordings one after another", row=2)
     title = f"Identification of {escape(found.model.actuator.name)}"
     return figure.update_layout(template="plotly_white", height=1000, title=title)
+
+
+def _title(found: Identification, recording: Recording) -> str:
+    return quantity_title(recording.quantity, found.model.actuator.shown(recording.unit))
 
 
 def _add_static(figure: go.Figure, found: Identification) -> None:

@@ -9,6 +9,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.actuators.wording import input_title, quantity_title
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Diagnosis, ResidualTorque
 
@@ -16,9 +18,8 @@ BUCKETS = 1500
 """Stretches of time of which a curve shows the lowest and the highest sample. Derived: as many as a wide screen has
 pixels for the plot."""
 COLOURS = {"measured": "#1f2933", "nominal": "#c2413b", "recalibrated": "#e08e2b", "final": "#2563a8"}
-DUTY = "#4b8b57"
+INPUT = "#4b8b57"
 WINDOW = "#f5c542"
-LABELS = {"hall_voltage": "Hall voltage [V]", "position": "angle [rad]"}
 MEANINGS = {
     "measured": "measured",
     "nominal": "model as described",
@@ -40,12 +41,12 @@ def thinned(time: Signal, values: Signal) -> tuple[Signal, Signal]:
 
 
 def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Figure:
-    """Signals, errors and duty of the first recording over time, the located windows shaded and numbered."""
+    """Signals, errors and input of the first recording over time, the located windows shaded and numbered."""
     titles = (
         "measured and simulated",
         "error before: measured less simulated",
         "error after, with the band that noise fills 95 % of the time",
-        "duty",
+        diagnosis.input,
     )
     heights = [0.34, 0.24, 0.24, 0.18]
     plot = make_subplots(
@@ -57,19 +58,26 @@ def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Fig
             error = signals["measured"] - signals[name]
             row = 3 if name == "final" else 2
             _curve(plot, row, MEANINGS[name], signals["time"], error, COLOURS[name], name, legend=False)
-    _curve(plot, 4, "duty", signals["time"], signals["duty"], DUTY, "duty", legend=False)
+    _curve(plot, 4, diagnosis.input, signals["time"], signals["command"], INPUT, "input", legend=False)
     _shade(plot, diagnosis)
-    for row, title in enumerate((LABELS[diagnosis.quantity], *[f"error [{diagnosis.unit}]"] * 2, "duty"), start=1):
+    errors = [f"error [{diagnosis.unit}]"] * 2
+    axes = (quantity_title(diagnosis.quantity, diagnosis.unit), *errors, driving_title(diagnosis))
+    for row, title in enumerate(axes, start=1):
         plot.update_yaxes(title_text=title, row=row, col=1)
     plot.update_xaxes(title_text="time [s]", row=4, col=1)
     return _styled(plot, 900).update_layout(hovermode="x")
+
+
+def driving_title(diagnosis: Diagnosis) -> str:
+    """Title of the axis of the input: a duty is a share, and has no unit."""
+    return "duty" if diagnosis.input == "duty" else input_title(diagnosis.input, diagnosis.motion)
 
 
 def _curve(
     plot: go.Figure, row: int, name: str, time: Signal, values: Signal, colour: str, group: str, legend: bool = True
 ) -> None:
     x, y = thinned(time, values)
-    line = {"color": colour, "width": 1.3, "shape": "hv" if group == "duty" else "linear"}
+    line = {"color": colour, "width": 1.3, "shape": "hv" if group == "input" else "linear"}
     few = np.round(x, 3).astype(np.float32), y.astype(np.float32)
     trace = go.Scatter(x=few[0], y=few[1], name=name, line=line, legendgroup=group, showlegend=legend)
     plot.add_trace(trace, row, 1)
@@ -89,13 +97,14 @@ def _shade(plot: go.Figure, diagnosis: Diagnosis) -> None:
         plot.add_hrect(y0=-band, y1=band, row=3, col=1, fillcolor="#9aa5b1", opacity=0.35, line_width=0, layer="below")
 
 
-def torque_figure(residual: ResidualTorque) -> go.Figure:
+def torque_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Figure:
     """The residual torque over angle and velocity, and the missing torque over time beside it."""
+    torque, velocity = unit_of("N.m", motion), unit_of("rad/s", motion)
     plot = make_subplots(rows=1, cols=2, column_widths=[0.58, 0.42], horizontal_spacing=0.16)
     largest = float(np.max(np.abs(residual.torque)))
-    degrees = [math.degrees(angle) for angle in residual.angle]
+    angles = [math.degrees(angle) if motion == "rotary" else angle for angle in residual.angle]
     surface = go.Contour(
-        x=degrees,
+        x=angles,
         y=residual.velocity,
         z=np.transpose(residual.torque),
         colorscale="RdBu_r",
@@ -103,11 +112,11 @@ def torque_figure(residual: ResidualTorque) -> go.Figure:
         zmax=largest,
         contours_coloring="heatmap",
         line_width=0.5,
-        colorbar={"title": "N.m", "x": 0.5, "thickness": 12},
+        colorbar={"title": torque, "x": 0.5, "thickness": 12},
     )
     plot.add_trace(surface, 1, 1)
-    plot.update_xaxes(title_text="angle [degrees]", row=1, col=1)
-    plot.update_yaxes(title_text="velocity [rad/s]", row=1, col=1)
+    plot.update_xaxes(title_text="angle [degrees]" if motion == "rotary" else "position [m]", row=1, col=1)
+    plot.update_yaxes(title_text=f"velocity [{velocity}]", row=1, col=1)
     if residual.over_time is not None:
         line = {"color": COLOURS["final"], "width": 1.5}
         trend = go.Scatter(
@@ -115,7 +124,11 @@ def torque_figure(residual: ResidualTorque) -> go.Figure:
         )
         plot.add_trace(trend, 1, 2)
         plot.update_xaxes(title_text="time [s]", row=1, col=2)
-        plot.update_yaxes(title_text="mean missing torque [N.m]", row=1, col=2)
+        plot.update_yaxes(
+            title_text=f"mean missing torque [{torque}]" if motion == "rotary" else f"mean missing force [{torque}]",
+            row=1,
+            col=2,
+        )
     return _styled(plot, 400)
 
 

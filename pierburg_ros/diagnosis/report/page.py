@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pierburg_ros.actuators.wording import quantity_title
 from pierburg_ros.diagnosis.report.figures import (
     COLOURS,
-    DUTY,
-    LABELS,
+    INPUT,
     MEANINGS,
     WINDOW,
+    driving_title,
     signal_figure,
     thinned,
     torque_figure,
@@ -32,6 +33,8 @@ VERDICTS = {
     "unexplained": "something is left that no effect of the catalogue removes",
 }
 """What each verdict means."""
+NOTHING = "nothing is concluded: the signals are not what they are read as"
+"""What a verdict means where the input is at fault."""
 ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
@@ -40,7 +43,11 @@ def write_page(path: Path, result: Result) -> None:
     """Write the report as one page that needs no network."""
     diagnosis = result.diagnosis
     plot = _embedded(signal_figure(diagnosis, result.signals), True)
-    torque = _embedded(torque_figure(diagnosis.residual_torque), False) if diagnosis.residual_torque else ""
+    torque = (
+        _embedded(torque_figure(diagnosis.residual_torque, diagnosis.motion), False)
+        if diagnosis.residual_torque
+        else ""
+    )
     path.write_text(page(diagnosis, plot, torque), encoding="utf-8")
 
 
@@ -54,7 +61,7 @@ def page(diagnosis: Diagnosis, plot: str, torque: str) -> str:
     template = environment.from_string(source.read_text(encoding="utf-8"))
     return template.render(
         d=diagnosis,
-        meaning=VERDICTS[diagnosis.verdict],
+        meaning=NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
         regimes=[regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
         shown=12,  # candidates; the others are folded away
         plot=plot,
@@ -109,31 +116,31 @@ def ties(alternatives: list[list[str]]) -> str:
 
 
 def picture(result: Result) -> Figure:
-    """Signals, errors before and after, and duty, as a Matplotlib figure."""
+    """Signals, errors before and after, and input, as a Matplotlib figure."""
     diagnosis, signals = result.diagnosis, result.signals
     drawn = Figure(figsize=(10, 8), layout="constrained")
     FigureCanvasAgg(drawn)
-    above, before, after, duty = drawn.subplots(4, sharex=True, height_ratios=[5, 3, 3, 2])
+    above, before, after, driving = drawn.subplots(4, sharex=True, height_ratios=[5, 3, 3, 2])
     for name, colour in COLOURS.items():
         _draw(above, signals, name, signals[name], colour)
         if name != "measured":
             _draw(after if name == "final" else before, signals, name, signals["measured"] - signals[name], colour)
-    time, values = thinned(signals["time"], signals["duty"])
-    duty.step(time, values, where="post", color=DUTY, linewidth=0.8)
+    time, values = thinned(signals["time"], signals["command"])
+    driving.step(time, values, where="post", color=INPUT, linewidth=0.8)
     if diagnosis.fit.noise_floor is not None:
         band = 1.96 * diagnosis.fit.noise_floor
         after.axhspan(-band, band, color="#9aa5b1", alpha=0.35, linewidth=0)
-    for axes in (above, before, after, duty):
+    for axes in (above, before, after, driving):
         axes.grid(alpha=0.25)
         for place in diagnosis.locations:
             axes.axvspan(place.start, place.end, color=WINDOW, alpha=0.3, linewidth=0)
     drawn.suptitle(headline(diagnosis), fontsize=11, parse_math=False)
     above.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8, frameon=False)
-    above.set_ylabel(LABELS[diagnosis.quantity])
+    above.set_ylabel(quantity_title(diagnosis.quantity, diagnosis.unit))
     before.set_ylabel(f"error before [{diagnosis.unit}]")
     after.set_ylabel(f"error after [{diagnosis.unit}]")
-    duty.set_ylabel("duty")
-    duty.set_xlabel("time [s]")
+    driving.set_ylabel(driving_title(diagnosis))
+    driving.set_xlabel("time [s]")
     return drawn
 
 

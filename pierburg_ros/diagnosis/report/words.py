@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
@@ -48,6 +49,8 @@ def reason(support: Support, unit: str) -> str:
     """Why an effect is believed; `unit` is the measured one."""
     if support.left_out is not None:
         return by_recordings_left_out(support.left_out, unit)
+    if support.weight is not None:
+        return by_weight(support.weight)
     return by_grid() if support.gain is None else by_evidence(support.gain)
 
 
@@ -56,6 +59,14 @@ def by_evidence(gain: float) -> str:
     return (
         f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
         "independent samples."
+    )
+
+
+def by_weight(weight: Weight) -> str:
+    """Why an effect is named although something remains."""
+    return (
+        f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
+        f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
     )
 
 
@@ -107,7 +118,8 @@ def summary(
     also = f" Besides: {'; '.join(drifts)}." if drifts else ""
     if verdict == "missing_physics":
         return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
-    helped = f" What helps on recordings left out is {_listed([e.id for e in effects])}. {named}" if effects else ""
+    listed = _listed([effect.id for effect in effects])
+    helped = f" What the recordings support all the same is {listed}. {named}{also}" if effects else ""
     return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
 
 
@@ -124,6 +136,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     if verdict == "unexplained" or (hidden and verdict != "missing_physics"):
         warning += " Nothing can be concluded: record again with fewer processes beside."
     return f"{warning} {text}"
+
+
+def provisional(text: str, stopped: bool) -> str:
+    """The summary, marked where the search had to end before it was done."""
+    return f"Stopped before all was tried; this is the best verdict yet. {text}" if stopped else text
 
 
 def cautioned(limits: Sequence[Limit], text: str) -> str:

@@ -68,7 +68,7 @@ def diagnosis(**changes) -> Diagnosis:
 
 def result(**changes) -> SimpleNamespace:
     measured = 2.0 + np.sin(TIME)
-    signals = {"time": TIME, "measured": measured, "duty": 0.1 * np.sin(TIME)}
+    signals = {"time": TIME, "measured": measured, "command": 0.1 * np.sin(TIME)}
     signals |= dict.fromkeys(("nominal", "recalibrated", "final"), measured + 0.1)
     return SimpleNamespace(diagnosis=diagnosis(**changes), signals=signals)
 

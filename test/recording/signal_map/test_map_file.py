@@ -42,6 +42,14 @@ def test_the_value_is_sign_times_unit_times_scale_times_raw_plus_offset(read):
     np.testing.assert_allclose(source.values(np.array([0.0, 90.0])), [0.25, 0.25 - math.pi / 4], rtol=1e-15)
 
 
+def test_names_with_brackets_need_no_quotes(read):
+    found = read("duty: {topic: /m, field: pwm.data[2], scale: 0.01}\nhall_voltage: {column: U [V] }\n")
+    assert found.sources["duty"].path.written == "pwm.data[2]" and found.sources["duty"].scale == 0.01
+    assert found.sources["hall_voltage"].name == "U [V]"
+    block = read("hall_voltage:\n  column: U [V]\n  unit: mV\ntime: {column: [sec, nanosec]}\n")
+    assert block.sources["hall_voltage"].name == "U [V]" and block.time.columns == ("sec", "nanosec")
+
+
 def test_a_column_may_be_called_by_a_number(read):
     assert read("duty: {column: 3}\n").sources["duty"].name == "3"
 
@@ -86,6 +94,8 @@ def test_a_topic_or_column_s_own_name_stands_for_its_signal(name, signal):
         ("duty: {topic: /a, sign: 0}\n", "duty found the sign 0, expected 1 or -1."),
         ("duty: {topic: /a, sign: true}\n", "duty found the sign True, expected 1 or -1."),
         ("duty: {topic: /a, unit: furlong}\n", "duty found the unit 'furlong', expected one of 1, percent"),
+        ("hall_voltage: {topic: /a, unit: mv}\n", "Did you mean mV?"),
+        ("position: {topic: /a, unit: degs}\n", "Did you mean deg?"),
         ("duty: {topic: /a, unit: deg}\n", "duty found the unit deg, expected one of 1, percent"),
         ("position: {topic: /a, unit: rpm}\n", "position found the unit rpm, expected one of rad, deg, mrad or m"),
         ("hall_voltage: {topic: /a, unit: counts}\n", "the unit counts, expected a scale too, in V per count."),
