@@ -35,8 +35,8 @@ MOVES = 2
 Not varied."""
 TRUST = 3.0
 """Standard deviations of what the samples say by which a beginning may be moved freely; more costs as a residual does.
-Measured: held within 5 or 30 of them, identified AK80 and ODrive runs keep up to 1.4 to 3.2 times the error (n = 5), for
-the steps of a real encoder are no white noise."""
+Measured: held within 5 or 30 of them, identified AK80 and ODrive runs keep up to 1.4 to 3.2 times the error (n = 5),
+for the steps of a real encoder are no white noise."""
 
 
 @dataclass(frozen=True)
