@@ -31,7 +31,8 @@ ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers", "deadline"}
+ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
@@ -57,6 +58,7 @@ ROOMS = {
         "paper": {"fit"},
         "identify": {"fit", "identifiability", "paper"},
         "experiment": {"fit", "identify", "paper"},
+        "description": {"fit", "identifiability", "identify"},
     },
     "nodes": {"core": set()},
     "plant": {

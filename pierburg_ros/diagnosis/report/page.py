@@ -33,6 +33,8 @@ VERDICTS = {
     "unexplained": "something is left that no effect of the catalogue removes",
 }
 """What each verdict means."""
+NOTHING = "nothing is concluded: the signals are not what they are read as"
+"""What a verdict means where the input is at fault."""
 ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
@@ -59,7 +61,7 @@ def page(diagnosis: Diagnosis, plot: str, torque: str) -> str:
     template = environment.from_string(source.read_text(encoding="utf-8"))
     return template.render(
         d=diagnosis,
-        meaning=VERDICTS[diagnosis.verdict],
+        meaning=NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
         regimes=[regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
         shown=12,  # candidates; the others are folded away
         plot=plot,
