@@ -20,7 +20,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 def run(*arguments: str) -> int:
     with pytest.raises(SystemExit) as ending:
-        main(["diagnose", *arguments])
+        main(["diagnose", "--thorough", *arguments])
     return ending.value.code
 
 
