@@ -12,6 +12,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.coordinates import in_order
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.estimation.shooting import stretch_length
 from pierburg_ros.plant import Model, simulate
@@ -136,7 +137,7 @@ class Fit:
         for name, moved in zip(self.names, point, strict=True):
             least, most = self.nominal.range(name)
             values[name] = min(max(self.nominal.values[name] * math.exp(moved), least), most)
-        return self.nominal.with_values(values)
+        return self.nominal.with_values(in_order(values, self.nominal))
 
     def point(self, model: Model) -> Signal:
         """The logarithms by which the numbers of `model` are moved."""
