@@ -15,6 +15,7 @@ COMMANDS = (
     "replay",
     "diagnose",
     "inspect",
+    "export",
     "actuator",
     "recover",
     "prove",
@@ -41,7 +42,9 @@ ROS_WHEELS = [
     "ros-jazzy-builtin-interfaces",
     "ros-jazzy-lifecycle-msgs",
 ]
+MUJOCO = ["mujoco>=3.13; python_version >= '3.11'"]
 TEST_TOOLS = [
+    *MUJOCO,
     "pytest",
     "pytest-rerunfailures",
     "pytest-xdist",
@@ -91,7 +94,7 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "benchmarks": ["mujoco"]},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

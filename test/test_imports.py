@@ -25,6 +25,7 @@ ALLOWED = {
     "recording": {"errors", "kernel", "intake", "arrays"},
     "serial_line": {"errors"},
 }
+ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
@@ -34,7 +35,7 @@ ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
 ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "library", "recording"}

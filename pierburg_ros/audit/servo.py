@@ -14,8 +14,8 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 
 FOLLOWING = (0.1, 0.3, 1.0, 3.0)
-"""Time constants with which a controlled shaft follows its setpoint, in the time in which it crosses its travel. Chosen:
-a loop that is slower does not follow."""
+"""Time constants with which a controlled shaft follows its setpoint, in times in which it crosses its travel. Chosen: a
+loop that is slower does not follow."""
 FOLLOWED = 0.9
 """Share of the motion that a followed setpoint explains, at least. Chosen: a tenth is left to overshoot."""
 BETTER = 0.5

@@ -14,6 +14,7 @@ from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
@@ -28,19 +29,24 @@ def diagnose(
     progress: Progress = lambda _: None,
     jobs: int | None = None,
     budget: float | None = None,
+    simulation: Sequence[Recording] = (),
     force: bool = False,
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
     `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; without a budget it takes what it takes.
-    Where signals are not what they are read as, that is all that is said, unless it goes on by `force`. InputError
-    where the recordings cannot be used.
+    InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
+    model: `nominal` is then fitted to them first. Where signals are not what they are read as, that is all that is
+    said, unless it goes on by `force`.
     """
     faults = [] if force else audit(recordings, nominal)
     if faults:
         return refusal(recordings, nominal, faults)
+    simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
+    nominal = simulator.model if simulator else nominal
     data = evidence(recordings, nominal)
+    data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
     found = search(data, nominal, progress, jobs, deadline=deadline)
     rest = None
@@ -52,7 +58,8 @@ def diagnose(
     )
     excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    return Result(written, conclusion.model, data.runs, signals(longest(data), conclusion))
+    result = Result(written, conclusion.model, data.runs, signals(longest(data), conclusion))
+    return simulator.told(result) if simulator else result
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

@@ -261,6 +261,30 @@ class DataQuality(Part):
     """What these recordings cannot tell for the way they were made, in words."""
 
 
+class Simulated(Part):
+    """A base parameter as the user's simulator has it."""
+
+    described: Number
+    """As the actuator is described, in `unit`."""
+    value: Number
+    """As fitted to the simulator's recordings, in `unit`: what the real ones are held against."""
+    unit: str
+
+
+class Simulation(Part):
+    """The user's own simulator, which stood for the nominal model."""
+
+    recordings: list[str]
+    """Names of its recordings."""
+    described_rmse: Number
+    """Error of the actuator as described on them, measured unit."""
+    rmse: Number
+    """What the fitted equations leave of them, without their own noise, measured unit: kept apart, no evidence."""
+    parameters: dict[str, Simulated]
+    effects: dict[str, dict[str, float]]
+    """What the equations need to reproduce it, and what the description always has; values in the catalogue's units."""
+
+
 class InputFault(Part):
     """A signal that is not what it is read as."""
 
@@ -300,6 +324,8 @@ class Diagnosis(Part):
     """Of the first recording, ranked."""
     regimes: list[Regime] = []
     """Of the first recording."""
+    simulation: Simulation | None = None
+    """What the recordings were held against, where that is the user's own simulator."""
     fit: FitQuality
     candidates: list[Candidate] = []
     not_testable: list[NotTestable] = []

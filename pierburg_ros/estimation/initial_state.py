@@ -95,7 +95,7 @@ class InitialState:
 
 
 def rest_angle(model: Model) -> float:
-    """Where an actuator without any input comes to rest [rad]: on its stop, at the end of its spring, or hanging down."""
+    """Where an actuator without input comes to rest [rad]: on its stop, at the end of its spring, or hanging down."""
     value, actuator = model.values, model.actuator
     stiffness = value.get("spring_stiffness", 0.0)
     relaxed = -value.get("spring_preload", 0.0) / stiffness if stiffness > 0.0 else 0.0

@@ -119,6 +119,7 @@ def diagnose(
     *,
     actuator: ActuatorLike | None = None,
     model: ModelLike | None = None,
+    simulation: Readable | Sequence[Readable] | None = None,
     progress: Progress | None = None,
     jobs: int | None = None,
     budget: float | None = USUAL_BUDGET,
@@ -127,11 +128,12 @@ def diagnose(
     """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
 
     Recordings of one actuator or their paths; compared with `model`, or with `actuator` as described (by default
-    the Pierburg valve). `progress` is told in words what is being tried. `jobs` is the number of fits at a time, by
-    default one for each core. Takes seconds to minutes: after `budget` [s], or Ctrl-C, the best verdict
-    yet is given and marked as such; None takes what it takes. Where signals are not what
-    they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes on. InputError where a
-    recording cannot be used.
+    the Pierburg valve). Recordings that your own simulator made of the same actuator, as `simulation`, stand for the
+    model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
+    words what is being tried. `jobs` is the number of fits at a time, by default one for each core. Takes seconds to
+    minutes: after `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; None takes what it takes.
+    Where signals are not what they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes
+    on. InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
         print(diagnosis.verdict, diagnosis.effects)
@@ -139,4 +141,6 @@ def diagnose(
     """
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = recordings_of(recordings, nominal.actuator)
-    return Diagnosis(diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs, budget, force))
+    simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
+    tell = progress or (lambda _: None)
+    return Diagnosis(diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force))

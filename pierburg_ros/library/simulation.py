@@ -155,9 +155,10 @@ def simulate(
 ) -> Simulation:
     """The actuator of `model` under a duty (open loop) or under the controller (closed loop).
 
-    `duty` [1, from -1 to 1; current in A or torque in N.m where the actuator is driven by one] or `setpoints` [rad] are values of shape (changes,) that each hold from their `time` [s]
-    until the next one; or a file, a CSV with the header `time,duty` or `time,setpoint`; or, for the duty, a
-    recording or its path. `controller`: settings, or their parameter file. `duration` [s] and `rate` [Hz] of the
+    `duty` [1, from -1 to 1; current in A or torque in N.m where the actuator is driven by one] or `setpoints` [rad]
+    are values of shape (changes,) that each hold from their `time` [s] until the next one; or a file, a CSV with the
+    header `time,duty` or `time,setpoint`; or, for the duty, a recording or its path. `controller`: settings, or their
+    parameter file. `duration` [s] and `rate` [Hz] of the
     samples; by default those of the input, or 500 Hz. `noise` is its RMS in the measured unit, drawn by `seed`;
     `initial_angle` [rad]. InputError where the input or the model cannot be used.
 
