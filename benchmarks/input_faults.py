@@ -308,9 +308,10 @@ verdict is `unexplained` without an effect, and the exit status is 0, for the co
 `identify` and `replay` print the same lines as a warning, and `inspect --actuator` as a hint. A late answer is no fault
 (delay and lag are physics), and what equals a drift by less than a factor of 6 is a drift.
 
-Found: {found} of {tried} faults, at most {slowest:.1f} s an audit by the wall clock (the load was 20 on two
-cores; it takes 0.1 to 2.5 s on cores that are free). Each is made of practice recordings (valve) or real ones (bench, the XL330 servo). Found means that the right signal is blamed in the
-right words. Refusals by the reader, such as that of percent, count where they name what mends them.
+Found: {found} of {tried} faults, at most {slowest:.1f} s an audit by the wall clock (the load was 20 on two cores; it
+takes 0.1 to 2.5 s on cores that are free). Each is made of practice recordings (valve) or real ones (bench, the XL330
+servo). Found means that the right signal is blamed in the right words. Refusals by the reader, such as that of percent,
+count where they name what mends them.
 
 | fault | of | found |
 |---|---|---|
