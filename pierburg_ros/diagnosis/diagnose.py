@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.remainder.remainder import remainder
+from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
@@ -32,7 +33,13 @@ def diagnose(
     found = search(data, nominal, progress, jobs)
     rest = remainder(found, progress, jobs) if verdict_on(found.chosen) == "unexplained" else None
     conclusion = conclude(found, rest)
-    return Result(document(found, conclusion), conclusion.model, data.runs, signals(longest(data), conclusion))
+    return Result(
+        document(found, conclusion),
+        conclusion.model,
+        data.runs,
+        signals(longest(data), conclusion),
+        exhibits(found, conclusion),
+    )
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

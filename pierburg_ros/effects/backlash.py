@@ -32,4 +32,5 @@ EFFECT = Effect(
     linear=True,
     jumps=True,
     drives=MOTORS,
+    play="gap",
 )

@@ -20,6 +20,7 @@ EFFECT = Effect(
     memory="brief",
     linear=True,
     sensors=("hall_voltage", "position"),
+    play="width",
 )
 
 

@@ -7,7 +7,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from plotly.subplots import make_subplots
 
-from pierburg_ros.comparison.plot import COLOURS, LABELS
+from pierburg_ros.comparison.plot import COLOURS
+from pierburg_ros.pages.over_time import label
 from pierburg_ros.recording import Recording
 
 
@@ -18,7 +19,7 @@ def figure(recording: Recording, title: str) -> go.Figure:
     for row, name, values, shape in ((1, "measured", recording.measured, "linear"), (2, "duty", duty, "hv")):
         line = {"color": COLOURS[name], "width": 1.5, "shape": shape}
         plot.add_trace(go.Scatter(x=recording.time, y=values, name=name, line=line), row=row, col=1)
-    plot.update_yaxes(title_text=LABELS[recording.quantity], row=1)
+    plot.update_yaxes(title_text=label(recording.quantity, recording.unit), row=1)
     plot.update_yaxes(title_text="duty [%]", row=2)
     plot.update_xaxes(title_text="time [s]", row=2)
     return plot.update_layout(title=title, template="plotly_white", height=600, showlegend=False)
@@ -33,7 +34,7 @@ def picture(recording: Recording, title: str) -> Figure:
     signal.plot(recording.time, recording.measured, color=COLOURS["measured"], linewidth=1.2)
     percent = 100.0 * recording.command.at(recording.time, before=0.0)
     duty.step(recording.time, percent, where="post", color=COLOURS["duty"], linewidth=0.8)
-    signal.set_ylabel(LABELS[recording.quantity])
+    signal.set_ylabel(label(recording.quantity, recording.unit))
     duty.set_ylabel("duty [%]")
     duty.set_xlabel("time [s]")
     return drawn

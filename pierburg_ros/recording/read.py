@@ -6,6 +6,7 @@ Parameters, logs, diagnostics, metadata and attachments are never looked at.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,7 @@ def read_recording(
         else:
             made = assemble(Topics(found, named), time, preferred)
         check_bounds(made)
-    return made
+    return replace(made, path=path)
 
 
 def check_bounds(recording: Recording) -> None:

@@ -11,6 +11,7 @@ from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimat
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.pages import numbers
 
 SEPARATES = {
     "armature_resistance": "measure the motor resistance at standstill, or log the motor current",
@@ -26,10 +27,10 @@ SEPARATES = {
 def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
     """A value with its interval, for a sentence."""
     if estimate.value is None:
-        return f"{name.replace('_', ' ')} unknown"
-    unit = "" if estimate.unit == "1" else f" {estimate.unit}"
-    interval = f" ({estimate.ci95[0]:.4g} to {estimate.ci95[1]:.4g})" if estimate.ci95 else ""
-    return f"{name.replace('_', ' ')} {estimate.value:.4g}{unit}{interval}"
+        return f"{numbers.words(name)} unknown"
+    value = numbers.value(estimate.value, estimate.ci95) + numbers.unit(estimate.unit)
+    ends = f" ({numbers.interval(estimate.ci95)})" if estimate.ci95 else ""
+    return f"{numbers.words(name)} {value}{ends}"
 
 
 def effect_explanation(
@@ -54,7 +55,7 @@ def reason(support: Support, unit: str) -> str:
 def by_evidence(gain: float) -> str:
     """Why an effect is named that the best explanation needs."""
     return (
-        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
+        f"Without it the best explanation of the same size leaves {gain:,.0f} more in chi-squared, counted in "
         "independent samples."
     )
 

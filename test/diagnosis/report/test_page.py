@@ -1,12 +1,17 @@
 """The report: one page that needs no network, with every part of the document on it."""
 
-from types import SimpleNamespace
+import json
+import re
+from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
-from pierburg_ros.diagnosis.report.figures import BUCKETS, signal_figure, thinned, torque_figure
-from pierburg_ros.diagnosis.report.page import headline, picture, write_page
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.diagnosis.report.figures import autocorrelation, signal_figure, torque_figure, trend_figure
+from pierburg_ros.diagnosis.report.page import headline, write_page
+from pierburg_ros.diagnosis.report.picture import picture
+from pierburg_ros.diagnosis.result import Characteristic, Exhibits, Result, Tried, View
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -23,6 +28,7 @@ from pierburg_ros.diagnosis.schema import (
     ResidualTorque,
     TorqueOverTime,
 )
+from pierburg_ros.plant import Model
 
 TIME = 0.002 * np.arange(30000)
 
@@ -66,11 +72,30 @@ def diagnosis(**changes) -> Diagnosis:
     return Diagnosis(**{**fields, **changes})
 
 
-def result(**changes) -> SimpleNamespace:
+def result(drawn: int = 5, **changes) -> Result:
+    """A result with `drawn` rivals of which the page has the signals, and two recordings."""
     measured = 2.0 + np.sin(TIME)
     signals = {"time": TIME, "measured": measured, "duty": 0.1 * np.sin(TIME)}
     signals |= dict.fromkeys(("nominal", "recalibrated", "final"), measured + 0.1)
-    return SimpleNamespace(diagnosis=diagnosis(**changes), signals=signals)
+    said = diagnosis(**changes)
+    rivals = [Tried(f"rival_{n}", 1, "tied" if n == 0 else "rejected", 0.01, 0.02, 5.0 * n, f"rival-{n}") for n in range(drawn)]
+    tried = (Tried("static_friction", 1, "chosen", 0.004, 0.0042, 0.0, "final"), *rivals)
+    keys = ["nominal", "recalibrated", "final", *(row.key for row in rivals)]
+    views = tuple(view(name, keys) for name in said.recordings)
+    curves = {key: (TIME[:50], TIME[:50]) for key in keys[:3]}
+    law = Characteristic("friction", "friction", "velocity [rad/s]", "torque [N.m]", curves, (TIME[:9], TIME[:9]))
+    model = Model.nominal(read_actuator("pierburg"))
+    return Result(said, model, (), signals, Exhibits(views, tried, (law,)))
+
+
+def view(name: str, keys: list[str]) -> View:
+    """A minute at 500 Hz less a gap of two seconds, with errors like noise."""
+    random = np.random.default_rng(1)
+    there = (TIME < 30.0) | (TIME > 32.0)
+    time = TIME[there]
+    errors = {key: 0.003 * random.standard_normal(time.size) for key in keys}
+    state = np.sin(time)
+    return View(name, time, 2.0 + state, 0.1 * state, state, np.cos(time), errors, ((30.0, 32.0, "messages are missing"),))
 
 
 LEFT = ResidualTorque(
@@ -90,17 +115,49 @@ def page(tmp_path_factory) -> str:
 
 
 def test_page_is_whole_small_and_needs_no_network(page):
-    assert len(page) < 6e6
+    """6 MiB for a minute at 500 Hz with everything drawn; its own policy forbids it any address."""
+    assert len(page.encode()) < 6 * 2**20
     head = page.split("plotly.js v")[0] + page[page.rfind("</script>") :]
-    assert "src=" not in head and "cdn." not in head
+    assert "src=" not in head and "default-src 'none'" in head
     assert page.count("plotly.js v") == 1
+    assert page.index("plotly.js v") < page.index("data-plot")
+
+
+class Names(HTMLParser):
+    """Names of elements, and which are referred to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.wanted: list[str] = []
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        self.ids += [values["id"]] if "id" in values else []
+        self.wanted += [values[name] for name in ("data-zoom", "data-copy", "data-plot") if name in values]
+        if values.get("href", "").startswith("#"):
+            self.wanted.append(values["href"][1:])
+
+
+def test_every_link_and_button_leads_to_a_part_of_the_page(page):
+    names = Names()
+    names.feed(page)
+    assert len(names.ids) == len(set(names.ids)) and len(names.wanted) > 10
+    assert set(names.wanted) <= set(names.ids)
+
+
+def test_every_curve_over_time_has_its_signals(page):
+    signals = json.loads(re.search(r'id="signals">(.*?)</script>', page).group(1))
+    plots = re.findall(r'<script type="application/json" data-plot="time-\d">(.*?)</script>', page)
+    traces = [trace["meta"] for plot in plots for trace in json.loads(plot)["data"]]
+    assert traces and all({meta["time"], meta["plus"], meta.get("minus", "0/time")} <= set(signals) for meta in traces)
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "static friction", "0.26 to 0.28", "armature resistance with torque constant", "leaving the closed stop",
-        "0 to 28.6 degrees", "74 %", "spring preload", "supply voltage", "the flanks never part", "8 more",
+        "static friction", "0.260 to 0.280", "armature resistance with torque constant", "leaving the closed stop",
+        "0 to 28.6 degrees", "74 %", "spring preload", "supply voltage", "the flanks never part", "rival 4", "tied",
         "Log the supply voltage.", "angle 0 to 83 degrees", "train&lt;1&gt;.mcap", "0.0042",
     ],
 )  # fmt: skip
@@ -112,9 +169,30 @@ def test_page_of_something_unexplained_shows_the_torque(tmp_path):
     write_page(tmp_path / "report.html", result(verdict="unexplained", effects=[], residual_torque=LEFT))
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "up to 0.03 N.m that opens" in page and page.count("plotly.js v") == 1
-    surface, trend = torque_figure(LEFT).data
+    (surface,), (trend,) = torque_figure(LEFT).data, trend_figure(LEFT).data
     assert np.shape(surface.z) == (2, 2) and surface.z[1][0] == 0.02
     assert trend.y[1] is None
+
+
+def test_origin_is_told_and_commands_can_be_copied(tmp_path):
+    write_page(tmp_path / "report.html", result(), [("command", "pierburg <diagnose>")], [tmp_path / "my run.mcap"])
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "pierburg &lt;diagnose&gt;" in page
+    assert f"pierburg replay &#39;{tmp_path / 'my run.mcap'}&#39; --model model.yaml" in page
+
+
+def test_autocorrelation_of_a_decaying_error_is_its_decay():
+    """An error e[k] = a e[k-1] + w has autocorrelation a^n (Box, Jenkins, Time series analysis (1976), section 3.2)."""
+    random, share = np.random.default_rng(2), 0.95
+    error = np.zeros(TIME.size)
+    for k in range(1, error.size):
+        error[k] = share * error[k - 1] + random.standard_normal()
+    nothing = np.zeros(TIME.size)
+    seen = View("run", TIME, nothing, nothing, nothing, nothing, {"final": error})
+    lag, correlation, samples = autocorrelation([seen], "final")
+    assert samples == TIME.size
+    # Bartlett: the standard deviation of the estimate stays below sqrt((1 + a^2) / (1 - a^2) / n) = 0.026
+    np.testing.assert_allclose(correlation, share ** (lag / 0.002), atol=4 * 0.026)
 
 
 def test_figure_shades_and_numbers_the_windows():
@@ -122,15 +200,6 @@ def test_figure_shades_and_numbers_the_windows():
     windows = [shape for shape in drawn.layout.shapes if shape.x0 == 12.1]
     assert len(windows) == 4 and all(shape.x1 == 12.6 for shape in windows)
     assert "1" in [note.text for note in drawn.layout.annotations]
-
-
-def test_thinning_loses_no_peak():
-    values = np.zeros(TIME.size)
-    values[12345], values[12346] = 5.0, -7.0
-    time, kept = thinned(TIME, values)
-    assert time.size <= 2 * BUCKETS + 2 and np.all(np.diff(time) > 0.0)
-    assert kept.max() == 5.0 and kept.min() == -7.0
-    assert time[np.argmax(kept)] == TIME[12345]
 
 
 def test_headline_names_effects_and_drifts():

@@ -1,0 +1,163 @@
+"""The laws inside a model as curves: friction, load, sensor and play, with what the recordings say around them.
+
+The points are partial residuals: the final law plus what the recording lacks where it was taken, so that they lie on
+the final curve where it is right (Larsen, McCleary, The use of partial residual plots in regression analysis (1972)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.evidence.missing_torque import MissingTorque, missing_torque
+from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.result import Characteristic
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
+from pierburg_ros.effects import EFFECTS
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import angle_per_unit, decoded
+from pierburg_ros.plant.torques import friction, load
+
+NODES = 121
+"""Points of a curve. Work: one is drawn every five pixels."""
+POINTS = 1200
+"""Points of the recordings beside a curve. Work: more lie on top of each other."""
+
+
+def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristic, ...]:
+    """The laws that matter for this actuator; none for a sensor of speed, which shows no angle."""
+    if found.data.actuator.quantity == "speed" or found.data.actuator.drive != "voltage":
+        return ()
+    models = {
+        "nominal": conclusion.nominal.model,
+        "recalibrated": conclusion.recalibrated.model,
+        "final": conclusion.model,
+    }
+    run = found.data.runs[0]
+    missing = missing_torque(found.data, run, conclusion.model)
+    motion = motion_of(run, found.data.actuator, found.data.noise)
+    residual = (run.measured - run.simulated(conclusion.model, conclusion.final.switch)) * found.data.angle_per_unit
+    laws = [_friction(models, missing), _load(models, missing, motion.angle), _sensor(models, motion.angle, residual)]
+    return (*laws, *_plays(conclusion.model))
+
+
+def _friction(models: Mapping[str, Model], missing: MissingTorque) -> Characteristic:
+    """Friction over velocity at the middle of the angles at which the shaft moved."""
+    fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
+    middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
+    # more nodes near standstill, where the law bends
+    side = fastest * np.linspace(0.0, 1.0, NODES // 2) ** 2
+    velocity = np.concatenate([-side[::-1], [math.nan], side])
+    curves = {name: (velocity, friction_torque(model, velocity, middle)) for name, model in models.items()}
+    inside = np.abs(missing.velocity) <= fastest
+    known = ~np.isnan(velocity)
+    law = np.interp(missing.velocity[inside], velocity[known], curves["final"][1][known])
+    points = _some(missing.velocity[inside], law + missing.torque[inside])
+    return Characteristic(
+        "friction", f"friction at {math.degrees(middle):.0f} degrees", "velocity [rad/s]", "torque [N.m]", curves, points
+    )
+
+
+def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
+    """Friction [N.m], positive when it hinders opening, at steady `velocity` [rad/s], shape (velocities,).
+
+    The motor torque is the one that keeps that velocity. Where the velocity is 0 it is what breaks the shaft loose;
+    the side is that of the nearest other velocity.
+    """
+    record = model.record()[0]
+    result = np.full(velocity.size, math.nan)
+    middle = velocity.size // 2
+    for index, speed in enumerate(velocity):
+        if math.isnan(speed):
+            continue
+        side = math.copysign(1.0, speed) if speed != 0.0 else (1.0 if index > middle else -1.0)
+        weight, drag = load.load(record, angle, 0.0, 0.0)[0], friction.damping(record, side) * speed
+        level = 0.0
+        for _ in range(8):  # the level may depend on the motor torque, which it is a part of
+            level = friction.level(record, side, speed, angle, weight + drag + side * level)[0]
+        result[index] = side * level + drag
+    return result
+
+
+def _load(models: Mapping[str, Model], missing: MissingTorque, angle: Signal) -> Characteristic:
+    """Torque of spring, weight and all else that loads the shaft over its angle."""
+    nodes = np.linspace(*_travel(models["final"], angle), NODES)
+    curves = {name: (np.degrees(nodes), load_torque(model, nodes)) for name, model in models.items()}
+    points = _some(np.degrees(missing.angle), load_torque(models["final"], missing.angle) + missing.torque)
+    return Characteristic("load", "spring and load", "angle [degrees]", "torque that closes [N.m]", curves, points)
+
+
+def load_torque(model: Model, angle: Signal) -> Signal:
+    """Torque that loads the standing shaft at the start [N.m], positive closes, shape (angles,)."""
+    record = model.record()[0]
+    return np.array([load.load(record, float(each), 0.0, 0.0)[0] for each in angle])
+
+
+def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Characteristic:
+    """What the sensor shows too much by the nominal scale, over the true angle."""
+    nominal, final = models["nominal"], models["final"]
+    low, high = _travel(final, angle)
+    shown = np.linspace(low, high, NODES)
+    values = _values_at(nominal, shown)
+    curves = {}
+    for name, model in models.items():
+        true = decoded(model, values)
+        curves[name] = (np.degrees(true), np.degrees(shown - true))
+    true = decoded(final, _values_at(nominal, angle))
+    x, y = _some(np.degrees(true), np.degrees(angle - true + residual))
+    return Characteristic(
+        "sensor", "sensor: shown less true angle", "true angle [degrees]", "deviation [degrees]", curves, (x, y)
+    )
+
+
+def _values_at(model: Model, angle: Signal) -> Signal:
+    """What the straight sensor of `model` gives at an `angle` [rad], measured unit."""
+    origin = float(decoded(model, np.zeros(1))[0])
+    return np.asarray((angle - origin) / angle_per_unit(model))
+
+
+def _plays(model: Model) -> list[Characteristic]:
+    """For every play that acts: where the driven side is while the driving one goes to and fro."""
+    found = []
+    for effect in EFFECTS:
+        if effect.play is None or not effect.acts(model.values):
+            continue
+        gap = model.values[f"{effect.id}.{effect.play}"]
+        there = np.linspace(0.0, 6.0 * gap, NODES)
+        driving = np.concatenate([there, there[::-1]])
+        driven = np.concatenate([np.maximum(there - gap, 0.0), np.minimum(there[::-1], 5.0 * gap)])
+        name = effect.id.replace("_", " ")
+        found.append(
+            Characteristic(
+                effect.id,
+                f"{name}: to and fro",
+                "driving side [degrees]",
+                "driven side [degrees]",
+                {"final": (np.degrees(driving), np.degrees(driven))},
+            )
+        )
+    return found
+
+
+def _travel(model: Model, angle: Signal) -> tuple[float, float]:
+    """From stop to stop, or as far as the shaft went where there is none [rad]."""
+    actuator = model.actuator
+    low, high = float(np.min(angle)), float(np.max(angle))
+    return (
+        actuator.lower_stop if math.isfinite(actuator.lower_stop) else low,
+        actuator.upper_stop if math.isfinite(actuator.upper_stop) else high,
+    )
+
+
+def _some(x: Signal, y: Signal) -> tuple[Signal, Signal]:
+    """At most `POINTS` of the points, evenly taken, without the hundredth that lies farthest out to either side."""
+    if x.size == 0:
+        return x, y
+    low, high = np.quantile(y, [0.01, 0.99])
+    kept = np.flatnonzero((y >= low) & (y <= high))
+    kept = kept[:: max(1, kept.size // POINTS)]
+    return x[kept], y[kept]
