@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-NONE = "–"
+NONE = "-"
 MOST = 9
 """Digits beyond which none is shown. Derived: a double has 16, a person reads a phone number."""
 

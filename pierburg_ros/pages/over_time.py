@@ -90,7 +90,14 @@ def over_time(time: tuple[str, Signal], panels: Sequence[Panel], spans: Sequence
             known.add(curve.group)
         if panel.band is not None:
             plot.add_hrect(
-                y0=-panel.band, y1=panel.band, row=row, col=1, fillcolor=MISSING, opacity=0.3, line_width=0, layer="below"
+                y0=-panel.band,
+                y1=panel.band,
+                row=row,
+                col=1,
+                fillcolor=MISSING,
+                opacity=0.3,
+                line_width=0,
+                layer="below",
             )
         plot.update_yaxes(title_text=panel.axis, row=row, col=1)
     for span in spans:

@@ -40,7 +40,9 @@ class Plot:
             if "time" in trace.get("meta", {}):
                 trace["x"] = trace["y"] = []
         layout = {
-            key: value for key, value in figure["layout"].items() if key not in ("template", "height", "legend", "title")
+            key: value
+            for key, value in figure["layout"].items()
+            if key not in ("template", "height", "legend", "title")
         }
         return inert({"data": figure["data"], "layout": layout})
 
@@ -60,7 +62,13 @@ def written(
         lstrip_blocks=True,
     )
     environment.filters.update(numbers.FILTERS)
-    below: dict[str, Any] = {"model_file": "", "model_said": "The content of model.yaml.", "commands": (), "provenance": (), **frame}
+    below: dict[str, Any] = {
+        "model_file": "",
+        "model_said": "The content of model.yaml.",
+        "commands": (),
+        "provenance": (),
+        **frame,
+    }
     return environment.get_template(template).render(
         **below,
         **context,

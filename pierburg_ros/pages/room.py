@@ -22,7 +22,7 @@ def page_signals(recordings: Sequence[Mapping[str, Signal]], telling: Sequence[s
     stretch of time.
     """
     needed = sum(STORED * each["time"].size * (4 + 2 * (len(each) - 1)) for each in recordings)
-    signals = {}
+    signals: dict[str, Signal] = {}
     for number, each in enumerate(recordings):
         kept = slice(None) if needed <= ROOM else _kept(each, telling, ROOM / needed)
         signals |= {f"{number}/{name}": values[kept] for name, values in each.items()}

@@ -97,6 +97,7 @@ def tabulated(
         time_source="column",
         losses=tuple(loss for loss in losses if loss.spans),
         input=driven,
+        path=None,
         **acting,
     )
 

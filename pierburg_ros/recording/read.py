@@ -116,6 +116,7 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         time_source=", ".join(sources),
         losses=losses,
         input=driven,
+        path=None,
     )
 
 

@@ -21,7 +21,7 @@ def test_an_interval_has_digits_enough_to_tell_its_ends_apart(middle, ends, show
 
 
 def test_what_does_not_exist_is_a_dash():
-    assert (interval(None), value(None), percent(None)) == ("–", "–", "–")
+    assert (interval(None), value(None), percent(None)) == ("-", "-", "-")
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,17 @@ from typing import Any
 
 CHROMIUM, DRIVER = shutil.which("chromium") or shutil.which("google-chrome"), shutil.which("chromedriver")
 FLAGS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--hide-scrollbars",
-)  # fmt: skip
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+    "--hide-scrollbars",
+)
 PATIENCE = 120.0
 """Seconds until a page must have drawn its plots, on a machine under load."""
 JSON = {"Content-Type": "application/json"}
@@ -71,7 +79,7 @@ class Page:
 
 
 @contextmanager
-def browser(folder: Path, width: int, dark: bool = False) -> Iterator[Page]:
+def browser(folder: Path, width: int) -> Iterator[Page]:
     """A browser with a window of a `width` [px], as narrow as a phone's if asked; its profile is in `folder`."""
     assert CHROMIUM and DRIVER
     log = (folder / "driver.log").open("w+")
@@ -79,10 +87,9 @@ def browser(folder: Path, width: int, dark: bool = False) -> Iterator[Page]:
     page = None
     try:
         root = f"http://127.0.0.1:{_port(folder / 'driver.log', driver)}/session"
-        scheme = ("--force-dark-mode", "--blink-settings=preferredColorScheme=0") if dark else ()
         options = {
             "binary": CHROMIUM,
-            "args": [*FLAGS, *scheme, f"--user-data-dir={folder / 'profile'}"],
+            "args": [*FLAGS, f"--user-data-dir={folder / 'profile'}"],
             "mobileEmulation": {"deviceMetrics": {"width": width, "height": 1000, "pixelRatio": 1.0, "touch": False}},
         }
         wanted = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}

@@ -58,7 +58,12 @@ def _friction(models: Mapping[str, Model], missing: MissingTorque) -> Characteri
     law = np.interp(missing.velocity[inside], velocity[known], curves["final"][1][known])
     points = _some(missing.velocity[inside], law + missing.torque[inside])
     return Characteristic(
-        "friction", f"friction at {math.degrees(middle):.0f} degrees", "velocity [rad/s]", "torque [N.m]", curves, points
+        "friction",
+        f"friction at {math.degrees(middle):.0f} degrees",
+        "velocity [rad/s]",
+        "torque [N.m]",
+        curves,
+        points,
     )
 
 

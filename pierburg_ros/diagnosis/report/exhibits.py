@@ -49,7 +49,9 @@ def switched_off(data: Data, conclusion: Conclusion) -> list[tuple[Tried, Model]
             for samples in (data.train, data.test)
         )
         size = conclusion.final.explanation.size - 1
-        rows.append((Tried(f"{OFF}{effect}", size, "rejected", train or 0.0, test, float("nan"), f"{OFF}{effect}"), model))
+        rows.append(
+            (Tried(f"{OFF}{effect}", size, "rejected", train or 0.0, test, float("nan"), f"{OFF}{effect}"), model)
+        )
     return rows
 
 
@@ -65,11 +67,10 @@ def _view(data: Data, number: int, models: dict[str, Simulated]) -> View:
         angle=_joined([motion.angle for motion in motions]),
         velocity=_joined([motion.velocity for motion in motions]),
         errors={
-            key: _joined([run.measured - run.simulated(*simulated) for run in runs]) for key, simulated in models.items()
+            key: _joined([run.measured - run.simulated(*simulated) for run in runs])
+            for key, simulated in models.items()
         },
-        left_out=tuple(
-            (*span, "messages are missing") for recording, span in data.left_out if recording == number
-        ),
+        left_out=tuple((*span, "messages are missing") for recording, span in data.left_out if recording == number),
     )
 
 

@@ -27,7 +27,8 @@ LAGS = 1.0
 SCATTERED = 1500
 """Points of an error over angle or velocity. Work: more lie on top of each other."""
 NUMBERED = 6
-"""Windows that are numbered in a plot; more would overlap."""
+"""Windows that are numbered in a plot. Chosen: more would overlap."""
+
 
 def time_figure(
     diagnosis: Diagnosis, view: View, tried: Sequence[Tried], places: Sequence[Place], prefix: str
@@ -58,10 +59,13 @@ def time_figure(
         Panel("measured and simulated", label(diagnosis.quantity, unit), signals, 0.34),
         Panel("error of what is switched on", f"error [{unit}]", before, 0.24, band),
         Panel("error of the diagnosed model; grey: noise", f"error [{unit}]", [own["final"][1]], 0.24, band),
-        Panel("input", "input", [Curve("input", "input", "input", (f"{prefix}/command", view.command), steps=True)], 0.18),
+        Panel(
+            "input", "input", [Curve("input", "input", "input", (f"{prefix}/command", view.command), steps=True)], 0.18
+        ),
     ]
     spans = [
-        Span(place.start, place.end, str(rank) if rank <= NUMBERED else "") for rank, place in enumerate(places, start=1)
+        Span(place.start, place.end, str(rank) if rank <= NUMBERED else "")
+        for rank, place in enumerate(places, start=1)
     ]
     spans += [Span(start, end, missing=True) for start, end, _ in view.left_out]
     return over_time((f"{prefix}/time", view.time), panels, spans)

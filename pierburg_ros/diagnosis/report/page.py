@@ -31,7 +31,9 @@ ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
 
-def write_page(path: Path, result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()) -> None:
+def write_page(
+    path: Path, result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()
+) -> None:
     """Write the report as one page that needs no network.
 
     `provenance` is what it says of its origin; `sources` are the recordings' files, for commands to copy.
@@ -89,11 +91,12 @@ def residual_plots(views: Sequence[View], unit: str) -> list[Plot]:
     """What both errors repeat over time, and where in the state they are."""
     if not views:
         return []
+    repeated = "Autocorrelation of the errors; that of white noise is within the grey band"
     return [
-        Plot("autocorrelation", figures.autocorrelation_figure(views), "Autocorrelation of the errors; that of white noise is within the grey band", 320),
+        Plot("autocorrelation", figures.autocorrelation_figure(views), repeated, 320),
         Plot("over-angle", figures.state_figure(views, "angle", unit), "Errors over the angle", 320),
         Plot("over-velocity", figures.state_figure(views, "velocity", unit), "Errors over the velocity", 320),
-    ]  # fmt: skip
+    ]
 
 
 def law_plots(result: Result) -> list[Plot]:
@@ -136,12 +139,12 @@ def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, st
     """What to run next with the corrected model."""
     if not sources:
         return []
-    first = str(sources[0])
-    lines = [
-        command("See the corrected model beside a recording", ["pierburg", "replay", first, "--model", "model.yaml", "--output", "replayed"]),
-        command("Look whether a new recording fits the corrected model", ["pierburg", "diagnose", "new.mcap", "--model", "model.yaml", "--output", "again"]),
-    ]  # fmt: skip
-    return lines
+    replay = ["pierburg", "replay", str(sources[0]), "--model", "model.yaml", "--output", "replayed"]
+    again = ["pierburg", "diagnose", "new.mcap", "--model", "model.yaml", "--output", "again"]
+    return [
+        command("See the corrected model beside a recording", replay),
+        command("Look whether a new recording fits the corrected model", again),
+    ]
 
 
 def in_colours(tried: Sequence[Tried]) -> list[Tried]:

@@ -63,9 +63,7 @@ def rivals(found: Found, conclusion: Conclusion) -> list[tuple[Tried, Fit]]:
     status = statuses(found, chosen)
     size = max(chosen.explanation.size, 1)
     others = [
-        fit
-        for fit in distinct(found, chosen)[1:]
-        if status[identifier(fit)] == "tied" or fit.explanation.size == size
+        fit for fit in distinct(found, chosen)[1:] if status[identifier(fit)] == "tied" or fit.explanation.size == size
     ]
     others.sort(key=lambda fit: (status[identifier(fit)] != "tied", fit.chi2))
     rows = [(_row(found, conclusion, conclusion.final, "chosen", identifier(chosen)), conclusion.final)]
