@@ -1,7 +1,7 @@
 """How often a command sent once arrives, as `ros2 topic pub --once` sends it, with all nodes up.
 
 python benchmarks/once.py --times 100 writes its section of docs/reliability.md; --no-write only prints. A sender is a
-process of its own that waits for one reader, sends, stays for 0.1 s and ends.
+process of its own that waits for one reader, sends, stays for a while (`STAYS`) and ends.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ while publisher.get_subscription_count() < 1:
 message = Kind()
 {fill}
 publisher.publish(message)
-time.sleep(0.1)
+time.sleep({stay})
 node.destroy_node()
 rclpy.shutdown()
 """
@@ -47,9 +47,13 @@ message.value.double_value = {}
 PATIENCE = 5.0  # s that a command gets to show its effect
 
 
-def sent(topic: str, package: str, kind: str, fill: str) -> None:
-    """Send one message from a process of its own."""
-    code = SENDER.format(topic=topic, package=package, kind=kind, fill=fill)
+STAYS = (0.1, 2.0)
+"""Times [s] that a sender stays after its message: what `ros2 topic pub --once` does, and with `--keep-alive 2`."""
+
+
+def sent(topic: str, package: str, kind: str, fill: str, stay: float) -> None:
+    """Send one message from a process of its own that ends `stay` [s] after it."""
+    code = SENDER.format(topic=topic, package=package, kind=kind, fill=fill, stay=stay)
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
@@ -61,8 +65,8 @@ def arrived(node: rclpy.node.Node, has_come: Callable[[], bool]) -> bool:
     return has_come()
 
 
-def run(times: int, busy: int) -> tuple[int, int]:
-    """How many of so many setpoints and parameters, each sent once, arrived."""
+def run(times: int, busy: int, stay: float) -> tuple[int, int]:
+    """How many of so many setpoints and parameters, each sent once by a sender that stays for `stay` [s], arrived."""
     graph = own_graph()
     os.environ.update(graph)
     active: list[float] = []
@@ -83,9 +87,9 @@ def run(times: int, busy: int) -> tuple[int, int]:
             setpoints = parameters = 0
             for count in range(1, times + 1):
                 setpoint, resistance = count * 0.01, 4.0 + count * 0.01
-                sent("/setpoints", "std_msgs", "Float64", f"message.data = {setpoint!r}")
+                sent("/setpoints", "std_msgs", "Float64", f"message.data = {setpoint!r}", stay)
                 setpoints += arrived(node, lambda value=setpoint: value in active)
-                sent("/plant/set_parameter", "rcl_interfaces", "Parameter", RESISTANCE.format(resistance))
+                sent("/plant/set_parameter", "rcl_interfaces", "Parameter", RESISTANCE.format(resistance), stay)
                 parameters += arrived(node, lambda value=resistance: value in changed)
     rclpy.shutdown()
     return setpoints, parameters
@@ -101,15 +105,17 @@ def main() -> None:
     options = parser.parse_args()
     compile_kernels()
     others = os.getloadavg()[0]
-    setpoints, parameters = run(options.times, options.busy)
+    rows = ""
+    for stay in STAYS:
+        setpoints, parameters = run(options.times, options.busy, stay)
+        rows += f"| `/setpoints` | {stay} s | {setpoints} of {options.times} |\n"
+        rows += f"| `/plant/set_parameter` | {stay} s | {parameters} of {options.times} |\n"
     text = (
         "## Commands sent once\n\n"
-        "Each by a process that waits for one reader, sends, stays for 0.1 s and ends, as `ros2 topic pub --once`"
-        f" does; plant, controller and recorder run, with {options.busy} busy processes beside. {machine()}."
-        f" Load average before: {others:.1f}. {options.note}\n\n"
-        "| topic | arrived of sent |\n|---|---|\n"
-        f"| `/setpoints` | {setpoints} of {options.times} |\n"
-        f"| `/plant/set_parameter` | {parameters} of {options.times} |\n\n"
+        "Each by a process that waits for one reader, sends, stays for a while and ends, as `ros2 topic pub --once`"
+        " does, which stays for 0.1 s unless `--keep-alive` says otherwise; plant, controller and recorder run, with"
+        f" {options.busy} busy processes beside. {machine()}. Load average before: {others:.1f}. {options.note}\n\n"
+        f"| topic | stays | arrived of sent |\n|---|---|---|\n{rows}\n"
         "Made by `python benchmarks/once.py`."
     )
     print(text)

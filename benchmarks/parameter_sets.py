@@ -1,10 +1,10 @@
-"""Simulates random parameter sets within their declared ranges, and counts those that are slow or give no number.
+"""Simulates random parameter sets far beyond what is plausible, and counts those that are slow or give no number.
 
     python benchmarks/parameter_sets.py --count 1000000 --output parameter_sets.jsonl
 
-A set draws every base parameter and up to six effects anywhere in their ranges, ends included, and runs half a second
-of steps, reversals and an open bridge at 500 Hz. A process that stays with one set longer than `HANGS` is ended. Called
-again with the same output it goes on; `--seed` shows one set again.
+A set draws base parameters anywhere in their ranges and up to six effects up to `FAR` times what is plausible, ends
+included, and runs half a second of steps, reversals and an open bridge at 500 Hz. A process that stays with one set
+longer than `HANGS` is ended. Called again with the same output it goes on; `--seed` shows one set again.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ SLOW = 3.0
 """Processor time [s] for half a second of motion: its own length, the burst that is allowed, and as much again."""
 HANGS = 60.0
 MOST_EFFECTS = 6
+FAR = 1000.0
+"""Reach of an effect's parameters, in multiples of what is plausible."""
 
 
 def main() -> None:
@@ -148,11 +150,22 @@ def drawn(seed: int) -> tuple[Any, dict[str, float]]:
         names = [name for name in nominal.actuator.parameters if random.random() < 0.5]
         for index in random.permutation(len(EFFECTS))[: random.integers(0, MOST_EFFECTS + 1)]:
             names += [f"{EFFECTS[index].id}.{name}" for name in EFFECTS[index].names]
-        values = {name: anywhere(random, *nominal.range(name), choices(name)) for name in names}
+        values = {name: anywhere(random, *reach(nominal, name), choices(name)) for name in names}
         try:
             return nominal.with_values(values), values
         except InputError:
             continue
+
+
+def reach(nominal: Any, name: str) -> tuple[float, float]:
+    """Where a parameter is drawn: in its range, and for an effect up to `FAR` times what is plausible."""
+    from pierburg_ros.effects import DECLARED
+
+    minimum, maximum = nominal.range(name)
+    if name not in DECLARED:
+        return minimum, maximum
+    far = FAR * max(map(abs, DECLARED[name].expected(nominal.scales)))
+    return max(minimum, -far), min(maximum, far)
 
 
 def choices(name: str) -> tuple[float, ...]:
@@ -167,7 +180,6 @@ def anywhere(random: Any, minimum: float, maximum: float, choices: tuple[float, 
     """A value in a range: even, even in its logarithm, or an end."""
     if choices:
         return float(random.choice(choices))
-    maximum = min(maximum, 1e9)
     how = random.random()
     if how < 0.1:
         return float(random.choice([minimum, maximum]))

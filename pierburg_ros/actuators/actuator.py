@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from pierburg_ros.actuators.units import Motion, unit_of
-from pierburg_ros.effects.effect import Drive, Load, Sensor
+from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
 
 Input = Literal["duty", "current", "torque"]
@@ -83,6 +84,8 @@ class Actuator:
     motion: Motion = "rotary"
     joint: str = ""
     winding: Winding | None = None
+    description: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The content of the user's own file that describes it; None where the package ships it, or code made it."""
 
     @property
     def input(self) -> Input:
@@ -94,6 +97,10 @@ class Actuator:
         """Whether anything ends its travel."""
         return math.isfinite(self.lower_stop) or math.isfinite(self.upper_stop)
 
+    def obstacle(self, effect: Effect) -> str:
+        """Why `effect` cannot act in this actuator, in words; nothing where it can."""
+        return effect.obstacle(self.drive, self.load, self.quantity, self.has_stops)
+
     @property
     def sensor_span(self) -> float:
         """Angle between the two Hall end voltages [rad]; of a linear actuator its upper stop, or 1 m without one."""
@@ -104,7 +111,11 @@ class Actuator:
     @property
     def unit(self) -> str:
         """Unit of the measured quantity."""
-        return unit_of(SENSED[self.quantity], self.motion)
+        return self.shown(SENSED[self.quantity])
+
+    def shown(self, unit: str) -> str:
+        """A declared `unit` as this actuator has it: every output says it so."""
+        return unit_of(unit, self.motion)
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -10,14 +11,15 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding
-from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.actuators.units import Motion
+from pierburg_ros.actuators.values import described
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Drive, Load, Sensor
 from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import parsed, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
-SHIPPED = ("pierburg", "xl330")
+SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
 """Actuators that come with the package."""
 
 _MOTOR = {"torque_constant", "gear_ratio"}
@@ -138,19 +140,13 @@ class _Description(_Strict):
 
 
 def _check_effect(effect: str, values: dict[str, float]) -> None:
-    """Refuse an effect whose numbers are unknown, missing or out of their ranges."""
+    """Refuse an effect whose numbers are unknown or missing."""
     declared = EFFECT[effect]
     if unknown := sorted(set(values) - set(declared.names)):
         raise ValueError(f"{effect} has no parameter {', '.join(unknown)}")
     for parameter in declared.parameters:
-        value = values.get(parameter.name)
-        if value is None and parameter.default is None:
+        if parameter.name not in values and parameter.default is None:
             raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
-        if value is not None and not min(parameter.minimum, 0.0) <= value <= parameter.maximum:
-            span = f"{parameter.minimum:g} to {parameter.maximum:g}"
-            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected {span}")
-        if value and parameter.choices and value not in parameter.choices:
-            raise ValueError(f"{effect}.{parameter.name} is {value:g}; expected one of {parameter.choices}")
 
 
 def read_actuator(source: str | Path) -> Actuator:
@@ -158,13 +154,24 @@ def read_actuator(source: str | Path) -> Actuator:
     with reading(source, FORM):
         text, label = _text(source)
         content = parsed(text, label, FORM).content
-        if not isinstance(content, dict):
-            raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
-        try:
-            return _actuator(_Description.model_validate(content))
-        except ValidationError as error:
-            problem = _first_problem(error)
-            raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
+        actuator = actuator_of(content, label)
+    return replace(actuator, description=None) if str(source) in SHIPPED else actuator
+
+
+def actuator_of(content: object, label: str) -> Actuator:
+    """The actuator that the `content` of a description says; InputError, with the `label`, where it says none."""
+    if not isinstance(content, dict):
+        raise InputError(f"{label} holds no actuator description; expected name, load, sensor, parameters.")
+    try:
+        actuator = replace(_actuator(_Description.model_validate(content)), description=content)
+    except ValidationError as error:
+        problem = _first_problem(error)
+        raise InputError(f"{label}: {problem}. Compare it with examples/my_actuator.yaml.") from None
+    try:
+        described(actuator)
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    return actuator
 
 
 def _text(source: str | Path) -> tuple[str, str]:
@@ -186,7 +193,7 @@ def _first_problem(error: ValidationError) -> str:
     return f"{place}: {message}" if place else message
 
 
-def _parameter(name: str, given: _Parameter, motion: Motion, sensor: Sensor) -> NominalParameter:
+def _parameter(name: str, given: _Parameter, sensor: Sensor) -> NominalParameter:
     unit, meaning = UNITS[name]
     if name == "sensor_offset":
         unit = SENSED[sensor]
@@ -194,7 +201,7 @@ def _parameter(name: str, given: _Parameter, motion: Motion, sensor: Sensor) -> 
         name,
         given.nominal,
         meaning,
-        unit_of(unit, motion),
+        unit,
         given.minimum,
         given.maximum,
         origin=given.origin,
@@ -218,8 +225,7 @@ def _sensor_parameters(description: _Description) -> dict[str, _Parameter]:
 
 def _actuator(description: _Description) -> Actuator:
     given = {**_sensor_parameters(description), **description.parameters}
-    motion, sensor = description.motion, description.sensor
-    parameters = {name: _parameter(name, p, motion, sensor) for name, p in given.items()}
+    parameters = {name: _parameter(name, p, description.sensor) for name, p in given.items()}
     stops, winding = description.stops, description.winding
     return Actuator(
         printable(description.name),
@@ -231,7 +237,7 @@ def _actuator(description: _Description) -> Actuator:
         stops.upper if stops else math.inf,
         description.effects,
         description.drive,
-        motion,
+        description.motion,
         printable(description.joint),
         Winding(winding.rated_current, winding.time_constant, printable(winding.origin)) if winding else None,
     )

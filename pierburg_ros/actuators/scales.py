@@ -23,11 +23,11 @@ class Scales:
     """What is large for an actuator: one number for each base unit; `reading` is that of the measured quantity."""
 
     torque: float
-    """[N.m]: of the stalled motor at full voltage."""
+    """[N.m]: of the stalled motor at full voltage; under other drives that of the load."""
     angle: float
     """[rad]: between the stops, or what stands in their place."""
     time: float
-    """[s]: over `angle` at the speed of the unloaded motor."""
+    """[s]: over `angle` at the speed of the unloaded motor; under other drives at that which `torque` reaches."""
     voltage: float
     """[V]: of the supply."""
     current: float
@@ -35,21 +35,25 @@ class Scales:
     temperature: float
     """[K]: rise that doubles the resistance of the winding."""
     reading: float
-    """[V] or [rad]: change of the measured quantity over `angle`."""
+    """[V], [rad] or [rad/s]: change of the measured quantity over `angle`."""
 
     @staticmethod
     def of(actuator: Actuator) -> Scales:
         """The scales of `actuator`, from its nominal numbers."""
         value = {name: parameter.nominal for name, parameter in actuator.parameters.items()}
-        per_current = value["gear_ratio"] * value["torque_constant"]
-        voltage, current = value["supply_voltage"], value["supply_voltage"] / value["armature_resistance"]
-        torque, speed = per_current * current, voltage / per_current
-        angle = _angle(actuator, value, torque, speed)
-        reading = angle
-        if actuator.quantity == "hall_voltage":
-            span = value["hall_voltage_open"] - value["hall_voltage_closed"]
-            reading = abs(span) * angle / (math.pi / 2)
-        return Scales(torque, angle, angle / speed, voltage, current, 1.0 / COPPER, reading)
+        per_current = value.get("gear_ratio", 1.0) * value.get("torque_constant", 1.0)
+        if actuator.drive == "voltage":
+            voltage, current = value["supply_voltage"], value["supply_voltage"] / value["armature_resistance"]
+            torque, speed = per_current * current, voltage / per_current
+            angle = _angle(actuator, value, torque, speed)
+        else:
+            torque = _load_torque(actuator, value, per_current)
+            angle = _angle(actuator, value, torque, 0.0)
+            speed = math.sqrt(angle * torque / value["total_inertia"])
+            current, voltage = torque / per_current, torque * speed / (torque / per_current)
+        return Scales(
+            torque, angle, angle / speed, voltage, current, 1.0 / COPPER, _reading(actuator, value, angle, speed)
+        )
 
     def of_unit(self, unit: str) -> float:
         """The scale of a number with this unit, such as `N.m.s/rad`; KeyError where a unit is unknown."""
@@ -84,11 +88,35 @@ class Scales:
         }
 
 
+def _load_torque(actuator: Actuator, value: dict[str, float], per_current: float) -> float:
+    """What is a large torque [N.m] for a drive without a voltage, which has no stall: the load's, or the winding's.
+
+    The weight of a pendulum; a spring at its stop, or a radian from rest without one; what the rated current gives;
+    ten times the friction of a free shaft, or what takes it round in a second where nothing else is known.
+    """
+    if value.get("gravity_torque"):
+        return value["gravity_torque"]
+    travel = actuator.upper_stop - actuator.lower_stop
+    reach = travel if math.isfinite(travel) else 1.0
+    if sprung := abs(value.get("spring_preload", 0.0)) + value.get("spring_stiffness", 0.0) * reach:
+        return sprung
+    if actuator.winding is not None and actuator.drive == "current":
+        return per_current * actuator.winding.rated_current
+    return 10.0 * value["coulomb_friction"] or 2.0 * math.pi * value["total_inertia"]
+
+
+def _reading(actuator: Actuator, value: dict[str, float], angle: float, speed: float) -> float:
+    """Change of the measured quantity over a large `angle` [rad], or at a large `speed` [rad/s]."""
+    if actuator.quantity == "hall_voltage":
+        return abs(value["hall_voltage_open"] - value["hall_voltage_closed"]) * angle / actuator.sensor_span
+    return speed if actuator.quantity == "speed" else angle
+
+
 def _angle(actuator: Actuator, value: dict[str, float], torque: float, speed: float) -> float:
     """What is a large angle [rad]: the travel between stops; without them what the load makes of the full torque.
 
-    A pendulum turns upright by its own nature. A spring gives way to the stalled motor so far; a free shaft goes so far
-    at full speed while it runs up to it.
+    A pendulum turns upright by its own nature. A spring gives way to the large torque so far; a free shaft goes so far
+    at full `speed` [rad/s] while it runs up to it, and a full turn where the drive knows no full speed.
     """
     travel = actuator.upper_stop - actuator.lower_stop
     if math.isfinite(travel):
@@ -97,4 +125,4 @@ def _angle(actuator: Actuator, value: dict[str, float], torque: float, speed: fl
         return math.pi / 2
     if value.get("spring_stiffness"):
         return torque / value["spring_stiffness"]
-    return value["total_inertia"] * speed / torque * speed
+    return value["total_inertia"] * speed / torque * speed if speed else 2.0 * math.pi

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.library.diagnosing import Diagnosis
@@ -27,6 +27,7 @@ def diagnose(
     output: Annotated[Path, typer.Option(help="Folder for the results.")],
     actuator: ActuatorOption = None,
     model: ModelOption = None,
+    signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
@@ -36,7 +37,10 @@ def diagnose(
     Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
     """
     nominal = chosen_or_valve(model, actuator)
-    measured = [read(path, time=time, topics=topics_of(topic), actuator=nominal.actuator) for path in recordings]
+    measured = [
+        read(path, time=time, topics=topics_of(topic), signals=signals, actuator=nominal.actuator)
+        for path in recordings
+    ]
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs)
         diagnosis.write_into(folder)

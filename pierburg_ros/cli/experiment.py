@@ -21,11 +21,11 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.identification.experiment.discriminate import discriminate as design_sequence
 from pierburg_ros.identification.experiment.discriminate_report import words, write_picture
 from pierburg_ros.identification.experiment.excitation import (
-    DURATION,
     DUTY_RECIPES,
     duty_sequence,
     purpose,
     setpoint_sequence,
+    usual_duration,
 )
 from pierburg_ros.identification.experiment.explanations import explanation
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
@@ -82,7 +82,7 @@ def experiment(
     if graph:
         require_ros()
     base, console = chosen_or_valve(model, actuator), terminal()
-    check_count(duration or max(DURATION.values()), rate, "An experiment")
+    check_count(duration or usual_duration(name or "", base), rate, "An experiment")
     with output_folder(output) as folder:
         if discriminate is not None:
             chosen = designed(folder, console, base, discriminate, duration or 60.0, rate, noise, limit)
@@ -102,7 +102,7 @@ def experiment(
 def recipe(name: str, base: Model, duration: float | None, rate: float, seed: int, limit: float) -> Sequence:
     """The sequence of recipe `name`."""
     purpose(name)
-    length = duration or DURATION.get(name, 60.0)
+    length = duration or usual_duration(name, base)
     time = np.arange(round(length * rate) + 1) / rate
     if name in DUTY_RECIPES:
         return Sequence("duty", name, time, np.clip(duty_sequence(name, base, time, seed), -limit, limit))

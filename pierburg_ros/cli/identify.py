@@ -10,7 +10,7 @@ from rich.console import Console
 
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, topics_of
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.identify import Identification
@@ -38,6 +38,7 @@ def identify(
     ] = None,
     fix: Annotated[list[str] | None, typer.Option(help="Hold this parameter. Repeatable.")] = None,
     audit: Annotated[bool, typer.Option("--audit", help="Check Table I against itself.")] = False,
+    signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
@@ -57,7 +58,9 @@ def identify(
             " run.mcap --output DIR."
         )
     start = chosen_or_valve(model, actuator)
-    measured = [read(path, time=time, topics=topics_of(topic), actuator=start.actuator) for path in recordings]
+    measured = [
+        read(path, time=time, topics=topics_of(topic), signals=signals, actuator=start.actuator) for path in recordings
+    ]
     with output_folder(output) as folder:
         with terminal(stderr=True).status("fitting whole recordings"):
             identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)

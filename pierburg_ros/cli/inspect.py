@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, topics_of
-from pierburg_ros.recording.inspect import Inspection, TopicContent
-from pierburg_ros.recording.inspect import inspect as inspected
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording.inspection import Inspection, TopicContent
+from pierburg_ros.recording.inspection import inspect as inspected
 
+FIELDS = 12
+"""Numbers of a topic that are listed; all are in the JSON."""
 SPANS = 5
 """Stretches that are listed; the others are counted, and all are in the JSON."""
 
@@ -22,19 +26,45 @@ SPANS = 5
 def inspect(
     recording: Annotated[Path, typer.Argument(help="MCAP, rosbag2 directory or CSV.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    write_signals: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a signal map of what was guessed, to edit.")
+    ] = None,
+    signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
 ) -> None:
-    """Show the topics of a recording: types, rates, ranges, losses, clocks, and which signal each is read as."""
-    found = inspected(recording, time=time, topics=topics_of(topic))
+    """Show the topics of a recording: types, rates, ranges, losses, clocks, what each is read as and could be.
+
+    --write-signals FILE writes a signal map with these guesses, which every command takes with --signals.
+    """
+    found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
+    if write_signals is not None:
+        write(write_signals, found.signals)
     if as_json:
         print(json.dumps(found.as_mapping(), indent=1, allow_nan=False))
         return
-    console = Console(highlight=False, soft_wrap=True, markup=False)
+    console = terminal()
     if found.recording is not None and found.recording.warning:
-        console.print(found.recording.warning)
-    console.print(table(found))
-    console.print(read_as(found))
+        console.print(found.recording.warning, soft_wrap=True)
+    console.print(table(found), soft_wrap=True)
+    console.print("\n".join(numbers(found)), soft_wrap=True)
+    console.print(read_as(found), soft_wrap=True)
+    if write_signals is not None:
+        console.print(
+            f"{write_signals}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True
+        )
+    elif found.recording is None:
+        advice = f"Write a signal map to edit: pierburg inspect {recording} --write-signals signals.yaml"
+        console.print(advice, soft_wrap=True)
+
+
+def write(path: Path, text: str) -> None:
+    """Write a signal map; one that is there, edited perhaps, stays."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise InputError(f"{path} exists, expected a new name for the signal map. Choose another.") from None
 
 
 def table(found: Inspection) -> Table:
@@ -58,6 +88,16 @@ def row(topic: TopicContent) -> tuple[str, ...]:
         "\n".join(topic.clocks),
         topic.read_as or "",
     )
+
+
+def numbers(found: Inspection) -> Iterator[str]:
+    """A line for each number of each topic: its path, its range, what it could be."""
+    for topic in found.topics:
+        for field in topic.fields[:FIELDS]:
+            limits = "no number" if field.minimum is None else f"{field.minimum:.4g} to {field.maximum:.4g}"
+            yield f"{topic.name} {field.path}".rstrip() + f"  {field.could_be or limits}"
+        if len(topic.fields) > FIELDS:
+            yield f"{topic.name}: {len(topic.fields) - FIELDS} more numbers, listed with --json"
 
 
 def read_as(found: Inspection) -> str:

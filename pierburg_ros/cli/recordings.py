@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,6 +18,14 @@ TopicOption = Annotated[
         "--topic",
         metavar="SIGNAL=NAME",
         help="Name the topic (or CSV column) of a signal, e.g. duty=/bench/pwm. May be given several times.",
+    ),
+]
+SignalsOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--signals",
+        metavar="FILE",
+        help="Signal map (YAML): each signal from any topic and field, or any column. 'inspect' writes one to edit.",
     ),
 ]
 TimeOption = Annotated[

@@ -9,7 +9,7 @@ import typer
 from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.recordings import TimeOption, TopicOption, losses_first, topics_of
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
@@ -21,6 +21,7 @@ def replay(
     output: Annotated[Path, typer.Option(help="Folder for the results.")],
     model: ModelOption = None,
     actuator: ActuatorOption = None,
+    signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
 ) -> None:
@@ -29,7 +30,7 @@ def replay(
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
     """
     chosen = chosen_model(model, actuator)
-    measured = read(recording, time=time, topics=topics_of(topic), actuator=chosen.actuator)
+    measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
     console = terminal()

@@ -19,6 +19,7 @@ def plant_set() -> dict[str, Model]:
     resistance = nominal.values["armature_resistance"]
     hot = {name: nominal.with_values({"armature_resistance": resistance * share}) for name, share in RESISTANCE.items()}
     worn = {
-        effect.id.replace("_", " "): nominal.with_values(effect.typical_values(nominal.values)) for effect in EFFECTS
+        effect.id.replace("_", " "): nominal.with_values(effect.typical_values(nominal.values, nominal.scales))
+        for effect in EFFECTS
     }
     return {NOMINAL: nominal, **hot, **worn}

@@ -1,4 +1,4 @@
-"""What a recording measured beside what a model would have measured under the same duty."""
+"""What a recording measured beside what a model would have measured under the same input."""
 
 from __future__ import annotations
 
@@ -34,6 +34,11 @@ class Comparison:
     recording: Recording
     model: Model
     simulated: Signal
+
+    @property
+    def unit(self) -> str:
+        """Unit of the measured quantity."""
+        return self.model.actuator.shown(self.recording.unit)
 
     @property
     def residual(self) -> Signal:
@@ -78,7 +83,7 @@ class Comparison:
             "recording": recording.name,
             "model": self.model.as_mapping(),
             "quantity": recording.quantity,
-            "unit": recording.unit,
+            "unit": self.unit,
             "time_source": recording.time_source,
             "samples": int(recording.time.size),
             "duration": recording.duration,

@@ -1,4 +1,4 @@
-"""diagnosis.json, schema 1 (section 5 of docs/contract.md): every field with its unit; null where there is none."""
+"""diagnosis.json, schema 2 (section 5 of docs/contract.md): every field with its unit; null where there is none."""
 
 from __future__ import annotations
 
@@ -60,6 +60,10 @@ class Effect(Part):
     """By name in the catalogue."""
     indistinguishable_from: list[Tie] = []
     """Alternatives that fit as well, each a list of effect ids and parameter names."""
+    share: Number = None
+    """Of the mismatch, what it explains beside the others, 0 to 1; null where there is no mismatch."""
+    share_alone: Number = None
+    """Of the mismatch, what it explains without the others, 0 to 1."""
     explanation: str
     """Why, in words, with numbers."""
 
@@ -133,6 +137,13 @@ class Errors(Part):
     """Of the written model, measured unit."""
 
 
+class Horizon(Errors):
+    """Errors of the three models some time after they have been set to the measured state, on all samples."""
+
+    after: Number
+    """That time [s]; null: over whole recordings from their first sample."""
+
+
 class FitQuality(Part):
     """What the model gained, against what no model can remove."""
 
@@ -142,6 +153,8 @@ class FitQuality(Part):
     """On the samples that were fitted."""
     validation: Errors
     """On samples that neither fit nor selection used."""
+    horizons: list[Horizon] = []
+    """The shortest first, whole recordings last."""
 
 
 class Candidate(Part):
@@ -163,6 +176,44 @@ class NotTestable(Part):
     why: str
     record: str
     """What to record to see it."""
+
+
+class RuledOut(Part):
+    """A strength that these recordings exclude with 95 %, of an effect that is not named."""
+
+    id: str
+    parameter: str
+    below: Number = None
+    """The strength is less than this, in `unit`; null where `above` says it."""
+    above: Number = None
+    """The value is more than this, in `unit`: of what acts the more the smaller it is, as a stiffness."""
+    unit: str
+
+
+class Remaining(Part):
+    """What the written model leaves."""
+
+    share: Number
+    """Of the mismatch, 0 to 1; null where there is no mismatch."""
+    looks_like: str
+    """Its size, how long it lasts, and what it goes with, in words."""
+
+
+class Excluded(Part):
+    """A span of time that was left out."""
+
+    start: float
+    """From the first sample [s]."""
+    end: float
+    """From the first sample [s]."""
+    why: str
+
+
+class CannotAct(Part):
+    """An effect that the actuator cannot have, by its drive, load, sensor or stops."""
+
+    id: str
+    why: str
 
 
 class TorqueOverTime(Part):
@@ -213,7 +264,7 @@ class DataQuality(Part):
 class Diagnosis(Part):
     """The whole document."""
 
-    schema_number: Literal[1] = Field(1, alias="schema")
+    schema_number: Literal[2] = Field(2, alias="schema")
     """Version of this layout; the key is `schema`."""
     recordings: list[str]
     """Names of the recordings."""
@@ -233,6 +284,13 @@ class Diagnosis(Part):
     fit: FitQuality
     candidates: list[Candidate] = []
     not_testable: list[NotTestable] = []
+    ruled_out: list[RuledOut] = []
+    """Of every effect that is not named and able to act, as far as these recordings tell."""
+    remaining: Remaining | None = None
+    excluded: list[Excluded] = []
+    """Spans without a known input, or that no simulation may be held against."""
+    cannot_act: list[CannotAct] = []
+    """Effects that were not tried, since an actuator of this kind cannot have them."""
     residual_torque: ResidualTorque | None = None
     """Only with the verdict "unexplained"."""
     data_quality: DataQuality

@@ -1,6 +1,7 @@
 """Inductance of the armature winding."""
 
 from pierburg_ros.effects.effect import PAPER, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
     id="armature_inductance",
@@ -10,10 +11,10 @@ EFFECT = Effect(
     source=PAPER,
     shows_in="fractions of a millisecond after each change of duty",
     record="samples at 10 kHz or a current measurement",
-    parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, 0.1, plausible=(0.0001, 0.005)),),
+    parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.0127)),),
     strength=("inductance",),
-    typical={"inductance": 0.001},
-    variants=(Variant(("inductance",), grid(inductance=(0.001, 0.005))),),
+    typical={"inductance": 0.002530387},
+    variants=(Variant(("inductance",), grid(inductance=(0.0025, 0.0127))),),
     memory="brief",
     linear=True,
     drives=("voltage",),

@@ -1,6 +1,7 @@
 """Free play between motor and shaft."""
 
 from pierburg_ros.effects.effect import MOTORS, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
     id="backlash",
@@ -12,7 +13,17 @@ EFFECT = Effect(
     shows_in="leaving the closed stop after negative duty",
     record="duty below 0 at the closed stop, then open, several times",
     parameters=(
-        Parameter("gap", None, "total free play at the shaft", "rad", 0.0, 0.5, plausible=(0.01, 0.12), stride=2.0),
+        Parameter(
+            "gap",
+            None,
+            "total free play at the shaft",
+            "rad",
+            0.0,
+            LARGEST,
+            plausible=(0.0064, 0.076),
+            searched=(0.0, 0.32),
+            stride=2.0,
+        ),
         Parameter(
             "motor_friction_share",
             0.0,
@@ -24,9 +35,9 @@ EFFECT = Effect(
         ),
     ),
     strength=("gap",),
-    typical={"gap": 0.015, "motor_friction_share": 0.2},
+    typical={"gap": 0.009549297, "motor_friction_share": 0.2},
     variants=(
-        Variant(("gap", "motor_friction_share"), grid(gap=(0.015, 0.04, 0.08), motor_friction_share=(0.1, 0.4))),
+        Variant(("gap", "motor_friction_share"), grid(gap=(0.0095, 0.0255, 0.051), motor_friction_share=(0.1, 0.4))),
     ),
     memory="brief",
     linear=True,

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import MOTORS, QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.effects.effect import QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
-TURNS = (0.9, 16.0)
+TURNS = (1.0, 16.0)
 """Range in which periods per motor revolution are looked for: the pole pairs and slots of small motors."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
@@ -19,12 +20,12 @@ def _turns(missing: Missing) -> Sequence[float]:
 
 def _whole_turns(missing: Missing) -> Sequence[float]:
     """The same as whole numbers: a motor has a whole number of teeth."""
-    return [max(1.0, float(round(rhythm))) for rhythm in _turns(missing)]
+    return [float(round(rhythm)) for rhythm in _turns(missing)]
 
 
 def _starts(missing: Missing) -> Sequence[Start]:
     return [
-        {"amplitude": 0.02, "periods_per_motor_revolution": periods, "phase": phase}
+        {"amplitude": 0.0075, "periods_per_motor_revolution": periods, "phase": phase}
         for periods in dict.fromkeys((*_turns(missing), *COMMON))
         for phase in QUADRATURE
     ]
@@ -45,26 +46,34 @@ EFFECT = Effect(
     shows_in="a ripple along the angle, at low velocity",
     record="very slow ramps over the whole travel",
     parameters=(
-        Parameter("amplitude", None, "amplitude at the shaft", "N.m", 0.0, 2.0, plausible=(0.01, 0.06), stride=5.0),
+        Parameter(
+            "amplitude",
+            None,
+            "amplitude at the shaft",
+            "N.m",
+            0.0,
+            LARGEST,
+            plausible=(0.0037, 0.0224),
+            stride=5.0,
+        ),
         Parameter(
             "periods_per_motor_revolution",
             None,
-            "ripple periods in one turn of the motor",
+            "ripple periods in one turn of the motor, of the output under a torque drive",
             "1",
             0.0,
-            64.0,
+            1000.0,
             plausible=(1.0, 12.0),
-            # a slower rhythm is a constant torque
-            least=0.9,
+            # a motor has a whole number of teeth
+            searched=(1.0, 64.0),
             rhythm=True,
         ),
-        Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15)),
+        Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), measure="1"),
     ),
     strength=("amplitude",),
-    typical={"amplitude": 0.03, "periods_per_motor_revolution": 6.0},
+    typical={"amplitude": 0.0112086, "periods_per_motor_revolution": 6.0},
     variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts),),
     ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
-    drives=MOTORS,
     turns_within=_quarter_turn,
 )
 

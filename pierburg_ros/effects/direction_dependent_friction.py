@@ -1,6 +1,7 @@
 """Friction that differs between opening and closing."""
 
 from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -17,28 +18,30 @@ EFFECT = Effect(
             0.0,
             "additional damping when closing",
             "N.m.s/rad",
-            -1.0,
-            1.0,
-            plausible=(0.01, 0.15),
+            -LARGEST,
+            LARGEST,
+            plausible=(0.061, 0.92),
+            searched=(-6.1, 6.1),
         ),
         Parameter(
             "coulomb_difference",
             0.0,
             "additional friction level when closing",
             "N.m",
-            -1.0,
-            1.0,
-            plausible=(0.01, 0.1),
+            -LARGEST,
+            LARGEST,
+            plausible=(0.0037, 0.0374),
+            searched=(-0.374, 0.374),
         ),
     ),
     strength=("viscous_difference", "coulomb_difference"),
-    typical={"viscous_difference": 0.03, "coulomb_difference": 0.03},
+    typical={"viscous_difference": 0.1843969, "coulomb_difference": 0.0112086},
     variants=(
-        Variant(("viscous_difference",), grid(viscous_difference=(-0.03, 0.05))),
-        Variant(("coulomb_difference",), grid(coulomb_difference=(-0.03, 0.03))),
+        Variant(("viscous_difference",), grid(viscous_difference=(-0.184, 0.31))),
+        Variant(("coulomb_difference",), grid(coulomb_difference=(-0.0112, 0.0112))),
         Variant(
             ("viscous_difference", "coulomb_difference"),
-            grid(viscous_difference=(-0.03, 0.05), coulomb_difference=(-0.03, 0.03)),
+            grid(viscous_difference=(-0.184, 0.31), coulomb_difference=(-0.0112, 0.0112)),
         ),
     ),
     linear=True,

@@ -35,36 +35,53 @@ ARMSTRONG = (
 )
 
 
+class Scales(Protocol):
+    """What is large for an actuator."""
+
+    def of_unit(self, unit: str) -> float:
+        """The scale of numbers with this `unit`."""
+
+
 class Missing(Protocol):
-    """What recordings show of the torque that a model misses: where starting values may be read from."""
+    """What recordings show of the torque that a model misses: where starting values may be read from.
+
+    Like starts it is in multiples of the actuator's scales: of the time of a travel, the travel, the stall torque.
+    """
 
     def turns(self, between: tuple[float, float], most: int) -> Sequence[float]:
         """The strongest rhythms over the angle [periods per motor revolution] within `between`, strongest first."""
 
     def pulses(self, between: tuple[float, float], most: int) -> Sequence[float]:
-        """The strongest rhythms in time [Hz] within `between`, strongest first."""
+        """The strongest rhythms in time, periods in the time of a travel, within `between`, strongest first."""
 
     def spans(self, most: int) -> Sequence[tuple[float, float, float]]:
-        """Spans of time that stand out: start [s], end [s] or 0 for the end of the recording, torque [N.m]."""
+        """Spans of time that stand out: start, end or 0 for the end of the recording, torque."""
 
     def tight_spots(self, most: int) -> Sequence[float]:
-        """Angles [rad] at which more friction is missing than elsewhere, the clearest first."""
+        """Angles at which more friction is missing than elsewhere, the clearest first."""
 
 
 @dataclass(frozen=True)
 class Parameter(parameter.Parameter):
-    """One number of an effect, and how a search moves it."""
+    """One number of an effect, and how a search moves it.
+
+    What is accepted, `minimum` to `maximum`, excludes what is impossible. What is plausible and what is searched are
+    multiples of the actuator's own scale of the unit: what is much for a valve is nothing for a crane.
+    """
 
     plausible: tuple[float, float] = (0.0, 0.0)
-    """Range in which a search starts."""
+    """Range in which a search starts, in multiples of the scale."""
+    searched: tuple[float, float] | None = None
+    """Range that a search does not leave, in multiples of the scale, where a value beyond would be another effect or
+    none that can be told; None: many times what is plausible."""
+    measure: str = ""
+    """The unit whose scale is meant, if not its own: a phase is no angle of the shaft, a converter's step no supply."""
     logarithmic: bool = False
     """Searched by its logarithm."""
     above: str | None = None
     """Base parameter that it is counted from, and is never below."""
     below: str | None = None
     """Base parameter that it stays below."""
-    least: float | None = None
-    """Lowest value that is searched, where a lower one would be another effect."""
     stride: float | None = None
     """Largest factor by which one linear step may scale it; None: a step does not scale it."""
     rhythm: bool = False
@@ -72,13 +89,22 @@ class Parameter(parameter.Parameter):
     dated: bool = False
     """Whether it tells when something happened in one recording, and not what the actuator is."""
 
+    def scale(self, scales: Scales) -> float:
+        """What is large for it [its unit] in an actuator with these `scales`."""
+        return scales.of_unit(self.measure or self.unit)
+
+    def expected(self, scales: Scales) -> tuple[float, float]:
+        """What is plausible [its unit] in an actuator with these `scales`."""
+        low, high = self.plausible
+        return low * self.scale(scales), high * self.scale(scales)
+
 
 @dataclass(frozen=True)
 class Variant:
     """One way in which an effect may act: what is free, what is fixed, and where a search for it starts.
 
-    `starts` are values by parameter, or what makes them of the torque that a model misses. A parameter that is
-    counted from another one starts by what it exceeds that.
+    `starts` are values by parameter in multiples of their scales, or what makes them of the torque that a model misses.
+    A parameter that is counted from another one starts by what it exceeds that.
     """
 
     free: tuple[str, ...]
@@ -119,8 +145,9 @@ class Effect:
     typical: Mapping[str, float]
     """Values as one meets them in an actuator still in service: guesses towards the lower end of what is plausible.
 
-    What is left out is 0; what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the
-    0.3 degree asked of a controller at standstill, which has nothing but this sensor and cannot correct them.
+    They are multiples of the scales, to the digits in which the controllers' plants are told. What is left out is 0;
+    what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the 0.3 degree asked of a
+    controller at standstill, which has nothing but this sensor and cannot correct them.
     """
     variants: tuple[Variant, ...] = ()
     """In which ways a search looks for it; none: it is not searched for."""
@@ -164,10 +191,14 @@ class Effect:
         """Whether it acts at a time of one recording, and is not a property of the actuator."""
         return any(p.dated for p in self.parameters)
 
-    def typical_values(self, base: Mapping[str, float]) -> dict[str, float]:
-        """The typical values by dotted name, for a model with the values `base`."""
-        values = {f"{self.id}.{name}": self.typical.get(name, 0.0) for name in self.names}
-        return self.counted(values, base)
+    def in_units(self, multiples: Mapping[str, float], scales: Scales) -> dict[str, float]:
+        """Values in their units by name, from `multiples` of the actuator's `scales`."""
+        return {name: value * self.parameter(name).scale(scales) for name, value in multiples.items()}
+
+    def typical_values(self, base: Mapping[str, float], scales: Scales) -> dict[str, float]:
+        """The typical values by dotted name, for a model with the values `base` of an actuator with these `scales`."""
+        typical = self.in_units(self.typical, scales)
+        return self.counted({f"{self.id}.{name}": typical.get(name, 0.0) for name in self.names}, base)
 
     def counted(self, values: Mapping[str, float], base: Mapping[str, float]) -> dict[str, float]:
         """`values` by dotted name with what is counted from a base parameter added to its value in `base`."""
@@ -178,14 +209,20 @@ class Effect:
         """Whether it acts in a model with these `values`, by dotted name."""
         return any(values[f"{self.id}.{name}"] != 0.0 for name in self.strength)
 
-    def acts_on(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> bool:
-        """Whether it can act in an actuator of this kind."""
-        fits = drive in self.drives and load in self.loads and sensor in self.sensors
-        return fits and (stops or not self.stops)
+    def obstacle(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> str:
+        """Why it cannot act in an actuator of this kind, in words; nothing where it can."""
+        for what, has, needed in (
+            ("drive", drive, self.drives),
+            ("load", load, self.loads),
+            ("sensor", sensor, self.sensors),
+        ):
+            if has not in needed:
+                return f"it needs {what} {' or '.join(needed)}, and the actuator has {what} {has}".replace("_", " ")
+        return "it needs stops, and the actuator has none" if self.stops and not stops else ""
 
 
 def grid(**values: tuple[float, ...]) -> tuple[Start, ...]:
-    """Every combination of starting `values`."""
+    """Every combination of starting `values`, multiples of their scales."""
     starts: list[dict[str, float]] = [{}]
     for name, several in values.items():
         starts = [{**start, name: value} for start in starts for value in several]

@@ -4,21 +4,22 @@ import math
 from collections.abc import Sequence
 
 from pierburg_ros.effects.effect import QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
-FREQUENCIES = (0.1, 20.0)
-"""Range in which the rhythm of a load is looked for [Hz]: slower ones take longer than a recording, and the shaft
-hardly follows faster ones."""
+FREQUENCIES = (0.0095, 1.9)
+"""Range in which the rhythm of a load is looked for, in periods to the time of a travel: slower ones take longer than a
+recording, and the shaft hardly follows faster ones."""
 
 
 def _pulses(missing: Missing) -> Sequence[float]:
-    """The strongest rhythms of the missing torque in time [Hz]."""
+    """The strongest rhythms of the missing torque in time."""
     return missing.pulses(FREQUENCIES, 5)
 
 
 def _pulsating(missing: Missing) -> Sequence[Start]:
     return [
-        {"amplitude": 0.02, "frequency": frequency, "phase": phase}
+        {"amplitude": 0.0075, "frequency": frequency, "phase": phase}
         for frequency in _pulses(missing)
         for phase in QUADRATURE
     ]
@@ -37,15 +38,24 @@ EFFECT = Effect(
     shows_in="a span of time, or a rhythm in time",
     record="standstills long enough to see several pulses",
     parameters=(
-        Parameter("torque", 0.0, "constant part, positive closes", "N.m", -5.0, 5.0, plausible=(-0.1, 0.1), stride=5.0),
+        Parameter(
+            "torque",
+            0.0,
+            "constant part, positive closes",
+            "N.m",
+            -LARGEST,
+            LARGEST,
+            plausible=(-0.0374, 0.0374),
+            stride=5.0,
+        ),
         Parameter(
             "amplitude",
             0.0,
             "amplitude of the pulsating part",
             "N.m",
             0.0,
-            5.0,
-            plausible=(0.01, 0.1),
+            LARGEST,
+            plausible=(0.0037, 0.0374),
             stride=5.0,
         ),
         Parameter(
@@ -54,21 +64,31 @@ EFFECT = Effect(
             "frequency of the pulsating part",
             "Hz",
             0.0,
-            200.0,
-            plausible=(0.2, 20.0),
+            LARGEST,
+            plausible=(0.019, 1.9),
             # a slower rhythm is a constant torque
-            least=0.02,
+            searched=(0.0019, 19.0),
             rhythm=True,
         ),
-        Parameter("phase", 0.0, "phase at the first sample", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), dated=True),
+        Parameter(
+            "phase",
+            0.0,
+            "phase at the first sample",
+            "rad",
+            -6.3,
+            6.3,
+            plausible=(-3.15, 3.15),
+            measure="1",
+            dated=True,
+        ),
         Parameter(
             "start",
             0.0,
             "first moment of the load, from the first sample",
             "s",
             0.0,
-            1000000000.0,
-            plausible=(0.0, 60.0),
+            LARGEST,
+            plausible=(0.0, 630.0),
             dated=True,
         ),
         Parameter(
@@ -77,13 +97,13 @@ EFFECT = Effect(
             "end of the load, from the first sample; 0: never",
             "s",
             0.0,
-            1000000000.0,
-            plausible=(0.0, 60.0),
+            LARGEST,
+            plausible=(0.0, 630.0),
             dated=True,
         ),
     ),
     strength=("torque", "amplitude"),
-    typical={"torque": 0.05, "amplitude": 0.03, "frequency": 2.0},
+    typical={"torque": 0.018681, "amplitude": 0.0112086, "frequency": 0.1909623},
     variants=(
         Variant(("amplitude", "frequency", "phase"), _pulsating),
         Variant(("torque", "start", "end"), _for_a_while),

@@ -1,6 +1,7 @@
 """An elastic transmission between motor and shaft."""
 
 from pierburg_ros.effects.effect import MOTORS, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
     id="gear_compliance",
@@ -17,8 +18,8 @@ EFFECT = Effect(
             "torsional stiffness at the shaft; 0: rigid",
             "N.m/rad",
             0.0,
-            100000.0,
-            plausible=(3.0, 60.0),
+            LARGEST,
+            plausible=(1.76, 35.0),
             logarithmic=True,
         ),
         Parameter(
@@ -27,14 +28,14 @@ EFFECT = Effect(
             "damping of the twist",
             "N.m.s/rad",
             0.0,
-            5.0,
-            plausible=(0.001, 0.05),
+            LARGEST,
+            plausible=(0.0061, 0.31),
             logarithmic=True,
         ),
     ),
     strength=("stiffness",),
-    typical={"stiffness": 30.0, "damping": 0.01},
-    variants=(Variant(("stiffness", "damping"), grid(stiffness=(4.0, 12.0, 40.0), damping=(0.01,))),),
+    typical={"stiffness": 17.60643, "damping": 0.06146564},
+    variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.35, 7.0, 23.5), damping=(0.061,))),),
     memory="brief",
     linear=True,
     drives=MOTORS,

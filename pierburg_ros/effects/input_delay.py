@@ -1,6 +1,7 @@
 """The duty takes effect late."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
     id="input_delay",
@@ -17,14 +18,15 @@ EFFECT = Effect(
             "time between the command and its effect",
             "s",
             0.0,
-            0.4,
-            plausible=(0.002, 0.05),
+            LARGEST,
+            plausible=(0.021, 0.52),
+            searched=(0.0, 4.2),
             stride=2.0,
         ),
     ),
     strength=("delay",),
-    typical={"delay": 0.002},
-    variants=(Variant(("delay",), grid(delay=(0.003, 0.01, 0.02, 0.035, 0.06, 0.12))),),
+    typical={"delay": 0.02094654},
+    variants=(Variant(("delay",), grid(delay=(0.031, 0.105, 0.21, 0.37, 0.63, 1.26))),),
     memory="brief",
     linear=True,
     jumps=True,

@@ -1,6 +1,7 @@
 """A return spring that gets stiffer with its travel."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -12,33 +13,33 @@ EFFECT = Effect(
     shows_in="large angles",
     record="standstills and slow ramps at small and large angles",
     parameters=(
-        Parameter("cubic_stiffness", 0.0, "cubic stiffness", "N.m/rad^3", 0.0, 5.0, plausible=(0.01, 0.15)),
+        Parameter("cubic_stiffness", 0.0, "cubic stiffness", "N.m/rad^3", 0.0, LARGEST, plausible=(0.0145, 0.217)),
         Parameter(
             "knee_stiffness",
             0.0,
             "additional stiffness beyond the knee",
             "N.m/rad",
             0.0,
-            50.0,
-            plausible=(0.02, 0.3),
+            LARGEST,
+            plausible=(0.0117, 0.176),
         ),
         Parameter(
             "knee_angle",
             0.0,
             "angle at which the additional stiffness starts",
             "rad",
-            -6.3,
-            6.3,
-            plausible=(0.3, 1.3),
+            -LARGEST,
+            LARGEST,
+            plausible=(0.19, 0.83),
             # an earlier knee is a stiffer spring
-            least=0.1,
+            searched=(0.064, 4.0),
         ),
     ),
     strength=("cubic_stiffness", "knee_stiffness"),
-    typical={"cubic_stiffness": 0.05},
+    typical={"cubic_stiffness": 0.07240354},
     variants=(
-        Variant(("cubic_stiffness",), grid(cubic_stiffness=(0.03,))),
-        Variant(("knee_stiffness", "knee_angle"), grid(knee_stiffness=(0.1,), knee_angle=(0.3, 0.6, 0.9, 1.2))),
+        Variant(("cubic_stiffness",), grid(cubic_stiffness=(0.0434,))),
+        Variant(("knee_stiffness", "knee_angle"), grid(knee_stiffness=(0.0587,), knee_angle=(0.19, 0.38, 0.57, 0.76))),
     ),
     loads=("spring",),
 )

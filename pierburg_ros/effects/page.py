@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pierburg_ros.effects import EFFECTS, Effect, Parameter
+from pierburg_ros.intake.bounds import LARGEST
 
 HEAD = """\
 # The effects
@@ -16,8 +17,10 @@ bit, while its strength is 0 (a stiffness of 0 is rigid). Any of them may act to
 model file, of the ROS parameters of `plant` (`effect.parameter`) and of the diagnosis.
 
 w is the shaft velocity, x = angle / (pi/2), i the current, T_m = k_g k_m i the motor torque at the shaft, T_c the
-Coulomb friction. Load torques are positive when they close. *Accepted* bounds what may be given and what a fit may
-find; *plausible* is where a search starts.
+Coulomb friction. Load torques are positive when they close. *Accepted* excludes what is impossible, and what has more
+than nine digits. *Plausible* is where a search starts, as a multiple of the actuator's own scale of the unit: of its
+stall torque, the travel between its stops, the time of that travel at no-load speed, its supply voltage and stall
+current (`actuators/scales.py`), so that it holds for any actuator in any units.
 """
 
 
@@ -48,12 +51,19 @@ def _section(effect: Effect) -> Iterator[str]:
 def _row(effect: Effect, parameter: Parameter) -> str:
     low, high = parameter.plausible
     accepted = " or ".join(f"{choice:g}" for choice in parameter.choices)
-    accepted = accepted or f"{parameter.minimum:g} to {parameter.maximum:g}"
+    accepted = accepted or _between(parameter.minimum, parameter.maximum)
     default = "0, absent" if parameter.name in effect.strength else "must be given"
     if parameter.name not in effect.strength and parameter.default is not None:
         default = f"{parameter.default:g}"
     name = f"**{parameter.name}**" if parameter.name in effect.strength else parameter.name
     return f"| {name} | {parameter.unit} | {accepted} | {low:g} to {high:g} | {default} | {parameter.meaning} |"
+
+
+def _between(minimum: float, maximum: float) -> str:
+    """A range in words."""
+    if maximum < LARGEST:
+        return f"{minimum:g} to {maximum:g}"
+    return "any" if minimum == -LARGEST else f"{minimum:g} or more"
 
 
 if __name__ == "__main__":

@@ -4,20 +4,21 @@ import math
 from collections.abc import Mapping, Sequence
 
 from pierburg_ros.effects.effect import ARMSTRONG, Effect, Missing, Parameter, Start, Variant
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 
 def _starts(missing: Missing) -> Sequence[Start]:
     return [
-        {"amplitude": 0.04, "center": center, "width": width}
+        {"amplitude": 0.015, "center": center, "width": width}
         for center in missing.tight_spots(4)
-        for width in (0.06, 0.2)
+        for width in (0.038, 0.127)
     ]
 
 
 def _width(values: Mapping[str, float]) -> float:
-    """Travel [rad] within which the friction turns no more than once."""
-    return values["position_dependent_friction.width"]
+    """Travel [rad] within which the friction turns no more than once; a spot without width is none."""
+    return values["position_dependent_friction.width"] or math.inf
 
 
 EFFECT = Effect(
@@ -29,21 +30,38 @@ EFFECT = Effect(
     shows_in="a band of angle, both directions",
     record="slow ramps over the whole travel in both directions",
     parameters=(
-        Parameter("amplitude", None, "additional friction at the tight spot", "N.m", 0.0, 5.0, plausible=(0.02, 0.12)),
-        Parameter("center", None, "angle of the tight spot", "rad", -6.3, 6.3, plausible=(0.1, 1.5)),
+        Parameter(
+            "amplitude",
+            None,
+            "additional friction at the tight spot",
+            "N.m",
+            0.0,
+            LARGEST,
+            plausible=(0.0075, 0.045),
+        ),
+        Parameter(
+            "center",
+            None,
+            "angle of the tight spot",
+            "rad",
+            -LARGEST,
+            LARGEST,
+            plausible=(0.064, 0.955),
+            searched=(-4.0, 4.0),
+        ),
         Parameter(
             "width",
             None,
             "half width of the tight spot, to 1/e",
             "rad",
-            0.005,
-            3.0,
-            plausible=(0.04, 0.3),
+            0.0,
+            LARGEST,
+            plausible=(0.0255, 0.19),
             logarithmic=True,
         ),
     ),
     strength=("amplitude",),
-    typical={"amplitude": 0.06, "center": 0.8, "width": 0.15},
+    typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
     variants=(Variant(("amplitude", "center", "width"), _starts),),
     jumps=True,
     turns_within=_width,

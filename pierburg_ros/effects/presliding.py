@@ -3,6 +3,7 @@
 import math
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -20,15 +21,24 @@ EFFECT = Effect(
             "bristle stiffness; 0: rigid",
             "N.m/rad",
             0.0,
-            100000.0,
-            plausible=(4.0, 60.0),
+            LARGEST,
+            plausible=(2.35, 35.0),
             logarithmic=True,
         ),
-        Parameter("damping", 0.0, "bristle damping", "N.m.s/rad", 0.0, 5.0, plausible=(0.001, 0.1), logarithmic=True),
+        Parameter(
+            "damping",
+            0.0,
+            "bristle damping",
+            "N.m.s/rad",
+            0.0,
+            LARGEST,
+            plausible=(0.0061, 0.61),
+            logarithmic=True,
+        ),
     ),
     strength=("stiffness",),
-    typical={"stiffness": 40.0, "damping": 0.03},
-    variants=(Variant(("stiffness", "damping"), grid(stiffness=(5.0, 15.0, 50.0), damping=(0.02,))),),
+    typical={"stiffness": 23.47524, "damping": 0.1843969},
+    variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.9, 8.8, 29.3), damping=(0.123,))),),
     # rad: of the friction contact, at the shaft where the teeth have parted; and of the motor side then
     state=("bristle", "motor_bristle"),
     memory="brief",

@@ -13,7 +13,11 @@ EFFECT = Effect(
     source="Mohan, Undeland, Robbins, Power Electronics, 3rd ed. (2003)",
     shows_in="small duty, and every change of its sign",
     record="the return at duty 0, and negative duty",
-    parameters=(Parameter("width", None, "duty that is lost", "1", 0.0, 0.5, plausible=(0.004, 0.04), stride=5.0),),
+    parameters=(
+        Parameter(
+            "width", None, "duty that is lost", "1", 0.0, 1.0, plausible=(0.004, 0.04), searched=(0.0, 0.5), stride=5.0
+        ),
+    ),
     strength=("width",),
     typical={"width": 0.02},
     variants=(Variant(("width",), grid(width=(0.005, 0.015, 0.04))),),

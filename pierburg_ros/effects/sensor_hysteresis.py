@@ -1,6 +1,7 @@
 """Play between the shaft and the magnet of the sensor."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -11,10 +12,22 @@ EFFECT = Effect(
     source="Visintin, Differential Models of Hysteresis (1994)",
     shows_in="each reversal, independent of speed",
     record="slow reversals at several angles",
-    parameters=(Parameter("width", None, "total play", "rad", 0.0, 0.5, plausible=(0.004, 0.04), stride=5.0),),
+    parameters=(
+        Parameter(
+            "width",
+            None,
+            "total play",
+            "rad",
+            0.0,
+            LARGEST,
+            plausible=(0.00255, 0.0255),
+            searched=(0.0, 0.32),
+            stride=5.0,
+        ),
+    ),
     strength=("width",),
-    typical={"width": 0.004},
-    variants=(Variant(("width",), grid(width=(0.005, 0.02))),),
+    typical={"width": 0.002546479},
+    variants=(Variant(("width",), grid(width=(0.0032, 0.0127))),),
     # rad: the magnet, and the shaft when the magnet last followed it
     state=("magnet", "followed"),
     memory="brief",

@@ -3,6 +3,7 @@
 import math
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -14,11 +15,13 @@ EFFECT = Effect(
     shows_in="fast travel and its sharp ends",
     record="sharp random steps and stop contacts",
     parameters=(
-        Parameter("time_constant", None, "of the first-order lag", "s", 0.0, 1.0, plausible=(0.002, 0.03), stride=5.0),
+        Parameter(
+            "time_constant", None, "of the first-order lag", "s", 0.0, LARGEST, plausible=(0.021, 0.31), stride=5.0
+        ),
     ),
     strength=("time_constant",),
-    typical={"time_constant": 0.002},
-    variants=(Variant(("time_constant",), grid(time_constant=(0.003, 0.01, 0.025))),),
+    typical={"time_constant": 0.02094654},
+    variants=(Variant(("time_constant",), grid(time_constant=(0.031, 0.105, 0.26))),),
     # rad, the angle that the sensor shows
     state=("lagged",),
     memory="brief",

@@ -3,6 +3,7 @@
 import math
 
 from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -20,12 +21,13 @@ EFFECT = Effect(
             "resolution (rad where the angle itself is measured)",
             "V",
             0.0,
-            1.0,
-            plausible=(0.001, 0.05),
+            LARGEST,
+            plausible=(0.00024, 0.0122),
+            measure="reading",
         ),
     ),
     strength=("step",),
-    typical={"step": 0.005},
+    typical={"step": 0.001219512},
     linear=True,
     rounds="step",
 )

@@ -3,6 +3,7 @@
 import math
 
 from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -21,8 +22,8 @@ EFFECT = Effect(
             "torque that breaks the shaft loose; at least coulomb_friction",
             "N.m",
             0.0,
-            5.0,
-            plausible=(0.21, 0.32),
+            LARGEST,
+            plausible=(0.079, 0.12),
             above="coulomb_friction",
         ),
         Parameter(
@@ -31,18 +32,18 @@ EFFECT = Effect(
             "velocity over which the excess fades; 0: at once",
             "rad/s",
             0.0,
-            20.0,
-            plausible=(0.02, 0.3),
+            LARGEST,
+            plausible=(0.0012, 0.018),
             logarithmic=True,
         ),
     ),
     strength=("breakaway_torque",),
     # what exceeds the sliding friction, here 40 % of the Pierburg actuator's
-    typical={"breakaway_torque": 0.08028, "stribeck_velocity": 0.1},
+    typical={"breakaway_torque": 0.02999422, "stribeck_velocity": 0.006078519},
     variants=(
         Variant(
             ("breakaway_torque", "stribeck_velocity"),
-            grid(breakaway_torque=(0.03, 0.06, 0.1), stribeck_velocity=(0.04, 0.12)),
+            grid(breakaway_torque=(0.0112, 0.0224, 0.0374), stribeck_velocity=(0.0024, 0.0073)),
         ),
     ),
     jumps=True,

@@ -1,6 +1,7 @@
 """Elastic end stops: a spring and a damper side by side, the contact of Kelvin and Voigt."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -18,15 +19,24 @@ EFFECT = Effect(
             "contact stiffness; 0: rigid",
             "N.m/rad",
             0.0,
-            100000.0,
-            plausible=(5.0, 60.0),
+            LARGEST,
+            plausible=(2.9, 35.0),
             logarithmic=True,
         ),
-        Parameter("damping", 0.0, "contact damping", "N.m.s/rad", 0.0, 5.0, plausible=(0.001, 0.1), logarithmic=True),
+        Parameter(
+            "damping",
+            0.0,
+            "contact damping",
+            "N.m.s/rad",
+            0.0,
+            LARGEST,
+            plausible=(0.0061, 0.61),
+            logarithmic=True,
+        ),
     ),
     strength=("stiffness",),
-    typical={"stiffness": 30.0, "damping": 0.01},
-    variants=(Variant(("stiffness", "damping"), grid(stiffness=(6.0, 20.0, 60.0), damping=(0.02,))),),
+    typical={"stiffness": 17.60643, "damping": 0.06146564},
+    variants=(Variant(("stiffness", "damping"), grid(stiffness=(3.5, 11.7, 35.0), damping=(0.123,))),),
     stops=True,
 )
 

@@ -1,6 +1,7 @@
 """A supply whose voltage falls under current."""
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -18,15 +19,15 @@ EFFECT = Effect(
             "resistance of supply and wiring; less than armature_resistance",
             "ohm",
             0.0,
-            50.0,
-            plausible=(0.2, 3.5),
+            LARGEST,
+            plausible=(0.048, 0.85),
             below="armature_resistance",
             stride=5.0,
         ),
     ),
     strength=("source_resistance",),
-    typical={"source_resistance": 0.5},
-    variants=(Variant(("source_resistance",), grid(source_resistance=(0.5, 1.5, 3.0))),),
+    typical={"source_resistance": 0.1208021},
+    variants=(Variant(("source_resistance",), grid(source_resistance=(0.12, 0.36, 0.72))),),
     linear=True,
     drives=("voltage",),
 )

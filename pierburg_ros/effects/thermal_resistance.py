@@ -3,6 +3,7 @@
 import math
 
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -21,20 +22,20 @@ EFFECT = Effect(
             "winding to ambient; 0: no heating",
             "K/W",
             0.0,
-            500.0,
-            plausible=(5.0, 60.0),
+            LARGEST,
+            plausible=(0.86, 10.3),
             logarithmic=True,
         ),
         Parameter(
-            "heat_capacity", None, "of the winding", "J/K", 0.001, 1000.0, plausible=(0.1, 5.0), logarithmic=True
+            "heat_capacity", None, "of the winding", "J/K", 0.0, LARGEST, plausible=(6.1, 305.0), logarithmic=True
         ),
     ),
     strength=("thermal_resistance",),
-    typical={"thermal_resistance": 20.0, "heat_capacity": 1.0},
+    typical={"thermal_resistance": 3.434525, "heat_capacity": 60.98818},
     variants=(
         Variant(
             ("thermal_resistance", "heat_capacity"),
-            grid(thermal_resistance=(10.0, 30.0), heat_capacity=(0.15, 0.5, 2.0)),
+            grid(thermal_resistance=(1.72, 5.15), heat_capacity=(9.15, 30.5, 122.0)),
         ),
     ),
     # K, of the winding

@@ -1,6 +1,7 @@
 """Viscous friction: a torque in proportion to velocity."""
 
 from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -18,14 +19,14 @@ EFFECT = Effect(
             "torque per velocity at the shaft",
             "N.m.s/rad",
             0.0,
-            2.0,
-            plausible=(0.01, 0.1),
+            LARGEST,
+            plausible=(0.061, 0.61),
             stride=5.0,
         ),
     ),
     strength=("coefficient",),
-    typical={"coefficient": 0.03},
-    variants=(Variant(("coefficient",), grid(coefficient=(0.03,))),),
+    typical={"coefficient": 0.1843969},
+    variants=(Variant(("coefficient",), grid(coefficient=(0.184,))),),
     linear=True,
 )
 

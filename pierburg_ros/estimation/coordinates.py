@@ -20,6 +20,12 @@ own change of R is a factor of 1.42, and a bound should not be met; not varied."
 WIDTH = 20.0
 """An effect's parameter is searched up to so many times what is plausible. Chosen: a bound that no fit should meet;
 not varied."""
+DECADE = 10.0
+"""A parameter searched by its logarithm is searched beyond what is plausible by this factor. Chosen: a bound that no
+fit should meet; not varied."""
+UNKNOWN = 0.04
+"""Scale of a base parameter that is nominally 0, or may be negative there, as a share of that of its unit. Chosen: a
+seventh of the valve's own preload; not varied."""
 ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
 """Parameters that are counted from a base parameter, by dotted name."""
 BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
@@ -113,7 +119,7 @@ def _axis(name: str, nominal: Model, duration: float) -> Axis:
     if name.endswith(WHEN):
         return Axis(duration, False, 0.03, 0.97, 0.0, duration, 0.0005)
     name = name.removesuffix(AFTER)
-    return _axis_of_effect(name) if "." in name else _axis_of_base(name, nominal)
+    return _axis_of_effect(name, nominal, duration) if "." in name else _axis_of_base(name, nominal)
 
 
 def _axis_of_base(name: str, nominal: Model) -> Axis:
@@ -122,17 +128,24 @@ def _axis_of_base(name: str, nominal: Model) -> Axis:
     if value > 0.0 and minimum >= 0.0:
         lower = max(-DRIFT, math.log(max(minimum / value, 1e-12)))
         return Axis(value, True, lower, min(DRIFT, math.log(maximum / value)), minimum, maximum, 0.0005)
-    scale = abs(value) or 0.01 * (maximum - minimum)
+    scale = abs(value) or UNKNOWN * nominal.scales.of_unit(nominal.actuator.parameters[name].unit)
     return Axis(scale, False, minimum / scale, maximum / scale, minimum, maximum, 0.0005)
 
 
-def _axis_of_effect(name: str) -> Axis:
+def _axis_of_effect(name: str, nominal: Model, duration: float) -> Axis:
     p = DECLARED[name]
-    low, high = p.plausible
-    minimum = p.minimum if p.least is None else p.least
+    if p.dated and p.unit == "s":
+        return Axis(duration, False, 0.0, 1.0, p.minimum, p.maximum, 0.001)
+    scale, (low, high) = p.scale(nominal.scales), p.plausible
+    lowest, highest = p.searched or (-math.inf, math.inf)
+    lowest, highest = max(lowest, p.minimum / scale), min(highest, p.maximum / scale)
+    # where the actuator always has the effect, a drift of it is searched too
+    own = abs(nominal.values[name]) / scale
     if p.logarithmic:
-        lower, upper = math.log(max(minimum, low / 10.0, 1e-9)), math.log(min(p.maximum, high * 10.0))
-        return Axis(1.0, True, lower, upper, p.minimum, p.maximum, 0.001)
-    scale = max(abs(low), abs(high))
-    lower, upper = max(minimum, -WIDTH * scale) / scale, min(p.maximum, WIDTH * scale) / scale
-    return Axis(scale, False, lower, upper, p.minimum, p.maximum, 0.0002 if p.rhythm else 0.001)
+        lower, upper = math.log(max(lowest, low / DECADE)), math.log(min(highest, high * DECADE))
+        if own > 0.0:
+            lower, upper = min(lower, math.log(own) - DRIFT), max(upper, math.log(own) + DRIFT)
+        return Axis(scale, True, lower, upper, p.minimum, p.maximum, 0.001)
+    large = max(abs(low), abs(high))
+    lower, upper = max(lowest / large, -WIDTH), max(min(highest / large, WIDTH), own * math.exp(DRIFT) / large)
+    return Axis(scale * large, False, lower, upper, p.minimum, p.maximum, 0.0002 if p.rhythm else 0.001)

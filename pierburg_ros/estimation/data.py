@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, parts_of, run_of
@@ -19,9 +20,10 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 
-BLOCK = 1.5
-"""Length of the blocks [s] that train, validate and test in turn; less in a recording shorter than 24 s. Chosen: some
-movements and standstills in each part, and longer than the 1.15 s in which the valve forgets; not varied."""
+BLOCK = 15.7
+"""Length of the blocks that train, validate and test in turn, in the actuator's own time; less in a recording shorter
+than 16 of them. Chosen: 1.5 s for the valve, some movements and standstills in each part, and longer than the 1.15 s in
+which it forgets; not varied."""
 CYCLE = 8
 """Of so many blocks the third validates and the seventh tests; the others train. Chosen: an eighth each, as far apart
 as can be; not varied."""
@@ -57,6 +59,11 @@ class Data:
         """
         parts = [run.measured - run.simulated(model, switch) for run in self.runs]
         return np.nan_to_num(np.concatenate(parts) / self.noise, nan=1e3, posinf=1e3, neginf=-1e3)
+
+    @property
+    def scales(self) -> Scales:
+        """What is large for the actuator."""
+        return Scales.of(self.actuator)
 
     @property
     def half_step(self) -> float:
@@ -105,7 +112,8 @@ def data_of(recordings: Sequence[Recording], model: Model) -> Data:
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
     left_out = tuple((number, span) for number, (_, found) in enumerate(cut) for span in found.left_out)
-    step = coarse_step([run.measured for run in runs], noise)
+    finest, _ = DECLARED[STEP].expected(model.scales)
+    step = coarse_step([run.measured for run in runs], noise, finest)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
     return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, left_out, warnings)
 
@@ -146,4 +154,6 @@ def _block(data: Data, run: Run) -> np.ndarray:
     """Number of the block of each sample of a run, from the start of its recording; a short one gets shorter blocks."""
     times = [each.time for each in data.runs if each.number == run.number]
     start, end = times[0][0], times[-1][-1]
-    return np.asarray(np.floor((run.time - start) / min(BLOCK, (end - start) / (2 * CYCLE))).astype(int))
+    return np.asarray(
+        np.floor((run.time - start) / min(BLOCK * data.scales.time, (end - start) / (2 * CYCLE))).astype(int)
+    )

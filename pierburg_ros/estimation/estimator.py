@@ -11,6 +11,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.estimation.least_squares import FULL, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
@@ -67,19 +68,23 @@ class Fit:
 class Estimator:
     """Fits explanations by one nominal model to the training samples of some recordings.
 
-    `over` maps a function over the columns of a Jacobian: on several cores where a fit has them to itself.
+    `over` maps a function over the columns of a Jacobian: on several cores where a fit has them to itself. With a
+    `discrepancy` residuals count by what it does not predict from the samples before: their innovations.
     """
 
-    def __init__(self, data: Data, nominal: Model, over: Map = map) -> None:
+    def __init__(self, data: Data, nominal: Model, over: Map = map, discrepancy: Discrepancy | None = None) -> None:
         self.data = data
+        self.discrepancy = discrepancy
         self.over = over
         self.nominal = nominal
         self._train = data.train
         self._validation = data.validation
+        self._filter = Kalman(data, self._train).filtered(discrepancy) if discrepancy else None
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
-        """Training residual of `model` in units of the noise; large where it cannot be simulated."""
-        return self.data.residual(model, switch)[self._train]
+        """Training residual of `model` in units of the noise, or its innovations; large where there is none."""
+        residual = self.data.residual(model, switch)
+        return residual[self._train] if self._filter is None else self._filter(residual)
 
     def chi2_at(self, explanation: Explanation, values: Mapping[str, float]) -> float:
         """Chi2 of an explanation with given values on the training samples."""

@@ -37,9 +37,9 @@ rules 508 of n = 522 beginnings within three synthetic recordings leave at most 
 CERTAIN = 4.0
 """So many standard deviations of its own noise make a slope or a bend certain. Measured: white noise bends so far in
 22 of n = 449,020 windows (6e-5 expected) and slopes so far in none of 1,000."""
-ROUNDING = 1e-12
-"""What counts as no difference where there is no noise, in the measured unit. Derived: the mean of 250 samples of 5 V
-is rounded by less than 250 x 5 x 1.1e-16 = 1.4e-13."""
+ROUNDING = 2e-13
+"""What counts as no difference where there is no noise, as a share of the largest value. Derived: the mean of 250
+samples is rounded by less than 250 x 1.1e-16 = 2.8e-14 of them."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class InitialState:
         """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once."""
         noise = noise_of(time, measured)
         length, even = _stays(measured[:LONGEST], noise), bool(_even(measured[:EVEN], BRISK * noise, noise).any())
-        while length >= 2 * FEWEST and _bent(measured[:length], noise):
+        while length >= 2 * FEWEST and _bent(measured[:length], noise, _rounding(measured)):
             length //= 2
         known = even or length >= FEWEST
         length = min(max(length, EVEN if even else FEWEST if known else SHORTEST), measured.size)
@@ -115,23 +115,31 @@ def first_rest(measured: Signal, noise: float) -> int | None:
     if sample is None:
         return None
     means = np.array([np.mean(measured[at : at + EVEN]) for at in range(sample, measured.size - EVEN + 1, EVEN)])
-    rests = np.abs(np.diff(means)) <= 2.0 * noise * np.sqrt(2.0 / EVEN) + ROUNDING
+    rests = np.abs(np.diff(means)) <= 2.0 * noise * np.sqrt(2.0 / EVEN) + _rounding(measured)
     return sample + EVEN * int(np.argmax(rests)) if rests.any() else None
+
+
+def _rounding(measured: Signal) -> float:
+    """What counts as no difference between samples [measured unit]."""
+    return ROUNDING * float(np.max(np.abs(measured), initial=0.0))
 
 
 def _stays(measured: Signal, noise: float) -> int:
     """How many samples from the first one stay where it is, within five times the noise."""
-    still = np.abs(measured - np.median(measured[:5])) <= 5.0 * noise + ROUNDING
+    still = np.abs(measured - np.median(measured[:5])) <= 5.0 * noise + _rounding(measured)
     return int(np.argmin(still)) if not still.all() else still.size
 
 
 def _slopes(time: Signal, measured: Signal, noise: float) -> bool:
     """Whether samples certainly rise or fall."""
     elapsed = time - np.mean(time)
-    return bool(abs(elapsed @ measured) > CERTAIN * noise * np.linalg.norm(elapsed) + ROUNDING)
+    return bool(
+        abs(elapsed @ measured)
+        > CERTAIN * noise * np.linalg.norm(elapsed) + _rounding(measured) * float(np.sum(np.abs(elapsed)))
+    )
 
 
-def _bent(windows: Signal, noise: float) -> NDArray[np.bool_]:
+def _bent(windows: Signal, noise: float, rounding: float) -> NDArray[np.bool_]:
     """Whether successive samples, along the last axis, certainly do not lie on a straight line.
 
     On a line the middle third has the mean of the outer two, but for the noise of these means.
@@ -139,7 +147,7 @@ def _bent(windows: Signal, noise: float) -> NDArray[np.bool_]:
     third = max(windows.shape[-1] // 3, 1)
     parts = (windows[..., :third], windows[..., third:-third], windows[..., -third:])
     first, middle, last = (np.mean(part, axis=-1) for part in parts)
-    return np.asarray(np.abs(first + last - 2.0 * middle) > CERTAIN * noise * np.sqrt(6.0 / third) + ROUNDING)
+    return np.asarray(np.abs(first + last - 2.0 * middle) > CERTAIN * noise * np.sqrt(6.0 / third) + rounding)
 
 
 def _even(measured: Signal, span: float, noise: float) -> NDArray[np.bool_]:
@@ -147,4 +155,5 @@ def _even(measured: Signal, span: float, noise: float) -> NDArray[np.bool_]:
     if measured.size < EVEN:
         return np.zeros(1, dtype=bool)
     windows = np.lib.stride_tricks.sliding_window_view(measured, EVEN)
-    return np.asarray((np.ptp(windows, axis=1) <= span + ROUNDING) & ~_bent(windows, noise))
+    rounding = _rounding(measured)
+    return np.asarray((np.ptp(windows, axis=1) <= span + rounding) & ~_bent(windows, noise, rounding))

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import DECLARED, STEP
 
 COARSE = 3.0
 """Steps of so many standard deviations of the noise before rounding decide what is measured. Derived: the error of
@@ -25,16 +24,17 @@ EXPLAINED = 1.1
 above the training error."""
 
 
-def coarse_step(measured: Sequence[Signal], noise: float) -> float:
-    """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise; otherwise 0.
+def coarse_step(measured: Sequence[Signal], noise: float, least: float) -> float:
+    """Step [measured unit] on whose grid all samples lie, if it is coarse beside the noise and not below the `least`.
 
+    Otherwise 0.
     Rounding a simulation does not make it fit better while the noise carries samples over the steps. With steps d,
     noise of standard deviation s leaves a squared error of 0.8 s d beside a rounded simulation. Beside a smooth one it
     leaves s^2 + d^2 / 12, which is less up to d = 8 s.
     """
     step = min(_grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
-    return step if step >= DECLARED[STEP].plausible[0] and step > COARSE * unrounded else 0.0
+    return step if step >= least and step > COARSE * unrounded else 0.0
 
 
 def counted(residual: Signal, half_step: float) -> float:

@@ -20,6 +20,9 @@ SEEN = 1.0
 """Error of the angle, in noises of the sensor, that one unknown stretch of the input may cause without the simulation
 starting again after it. Derived: one noise of the sensor; more would be seen."""
 
+ALIKE = 0.05
+"""Differences of the length of unknown stretches that make none, as a share of the shortest. Work: each
+length is looked at by itself."""
 KNOWN = 1000
 """Moments at which the known duty is looked at. Derived: their median is known to 1.25 / sqrt(1000) = 4 %."""
 
@@ -55,9 +58,11 @@ def pieces(recording: Recording, model: Model) -> Pieces:
 
 
 def _top_speed(model: Model) -> float:
-    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage."""
-    value = model.values
-    return value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
+    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage.
+
+    Under other drives it is what the load makes of a large torque.
+    """
+    return model.scales.angle / model.scales.time
 
 
 def _memory(model: Model) -> float:
@@ -74,7 +79,8 @@ def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:
     """
     step = np.abs(duty.at(ends, before=0.0) - duty.at(starts, before=0.0)) / math.sqrt(12.0)
     begins = np.linspace(duty.time[0], duty.time[-1], KNOWN)
-    lengths, place = np.unique(np.round(ends - starts, 4), return_inverse=True)
+    told = ALIKE * float(np.min(ends - starts))
+    lengths, place = np.unique(told * np.round((ends - starts) / told), return_inverse=True)
     wander = np.empty(lengths.size)
     for index, length in enumerate(lengths):
         inside = begins[:, None] + length * np.linspace(0.0, 1.0, 9)

@@ -11,6 +11,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
+from pierburg_ros.estimation.shooting import Shooting, forgets, stretch_length
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
@@ -34,7 +35,8 @@ class Run:
     `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
     explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
-    `number` counts recordings: one that lacks messages makes several runs.
+    `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
+    again and again.
     """
 
     name: str
@@ -47,12 +49,15 @@ class Run:
     validation: Flags
     decoder: Model | None = None
     number: int = 0
+    shooting: Shooting | None = None
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
 
         With a `switch` another model takes over in the middle, and the state goes on.
         """
+        if self.shooting is not None:
+            return self._shot(self.shooting, model, switch)
         start = self.start.state(model, self.quantity)
         if switch is None:
             output = simulate(model, self.inputs, self.time, *start)
@@ -60,18 +65,29 @@ class Run:
             output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
         return output if self.decoder is None else decoded(self.decoder, output)
 
+    def _shot(self, shooting: Shooting, model: Model, switch: Switch | None) -> Signal:
+        """In stretches; the one in which another model takes over begins and ends with either's own."""
+        output = shooting.simulated(model, self.inputs, self.time, self.measured, self.quantity)
+        if switch is None:
+            return output
+        after = shooting.simulated(switch.model, self.inputs, self.time, self.measured, self.quantity)
+        return np.where(self.time < switch.time, output, after)
+
     def cut(self, duration: float) -> Run:
         """The first `duration` [s] of the run."""
         return self.part(slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2)))
 
     def part(self, kept: slice) -> Run:
         """Some successive samples of the run."""
+        time, measured = self.time[kept], self.measured[kept]
+        again = self.shooting and Shooting.of(time, measured, self.shooting.length)
         return replace(
             self,
-            time=self.time[kept],
-            measured=self.measured[kept],
+            time=time,
+            measured=measured,
             train=self.train[kept],
             validation=self.validation[kept],
+            shooting=again,
         )
 
     def trained_on(self, train: Flags) -> Run:
@@ -86,8 +102,10 @@ def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Piece
     InputError where none can be simulated.
     """
     fewest = 2 * EVEN
-    cut = pieces(from_standstill(recording, model), model)
-    parts = [part for part in _from_standstills(cut.parts) if part.time.size >= fewest or len(cut.parts) == 1]
+    still = forgets(model.actuator)
+    cut = pieces(from_standstill(recording, model) if still else recording, model)
+    begun = _from_standstills(cut.parts) if still else cut.parts
+    parts = [part for part in begun if part.time.size >= fewest or len(cut.parts) == 1]
     if not parts:
         raise InputError(
             f"{recording.name} has no stretch of {fewest} samples with a known duty that begins at a standstill"
@@ -109,12 +127,28 @@ def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
 def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
     """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit."""
     actuator = model.actuator
+    if recording.input != actuator.input:
+        raise InputError(
+            f"{recording.name} holds a {recording.input} and actuator {actuator.name} is driven by a {actuator.input};"
+            f" expected a recorded {actuator.input}. Name it with --topic {actuator.input}=..., or choose another"
+            " --actuator."
+        )
+    if "speed" in {recording.quantity, actuator.quantity} and recording.quantity != actuator.quantity:
+        raise InputError(
+            f"{recording.name} holds a {recording.quantity} and actuator {actuator.name} measures its"
+            f" {actuator.quantity}; expected a recorded {actuator.quantity}. Choose another --actuator."
+        )
     if recording.quantity == "hall_voltage" and actuator.quantity == "position":
         raise InputError(
             f"{recording.name} holds a Hall voltage and actuator {actuator.name} measures its angle;"
             " expected a recorded position. Choose another --actuator."
         )
-    recording = from_standstill(recording, model)
+    shooting = None
+    if forgets(actuator):
+        recording = from_standstill(recording, model)
+    else:
+        length = stretch_length(recording.time, recording.measured, recording.quantity)
+        shooting = Shooting.of(recording.time, recording.measured, length)
     start = InitialState.of(recording.time, recording.measured)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
     return Run(
@@ -128,6 +162,7 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
         np.zeros(recording.time.size, dtype=bool),
         Model.nominal(actuator) if decodes else None,
         number,
+        shooting,
     )
 
 

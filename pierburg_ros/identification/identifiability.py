@@ -20,6 +20,8 @@ from pierburg_ros.recording.recording import Recording
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below this share of it. Given: a convention of the
 report, a tenth."""
+NOTHING = 1e-11
+"""Share of a parameter's trace that is none. Derived: a hundred thousand roundings of 1.1e-16."""
 MOST_PARTNERS = 4
 """Largest number of parameters looked for as those that together imitate another. Work: all combinations are tried;
 the valve's motion has four numbers, so four imitate any."""
@@ -42,7 +44,8 @@ class Finding:
 def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict[str, Finding]:
     """A finding for every base parameter of the actuator, free or held, and every other free parameter."""
     names = tuple(dict.fromkeys([*fitted.model.actuator.parameters, *fitted.names]))
-    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, recordings[0].unit)
+    unit = fitted.model.actuator.shown(recordings[0].unit)
+    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, unit)
     return {name: trace.finding(name) for name in names}
 
 
@@ -71,10 +74,10 @@ class _Trace:
         own = self.jacobian[:, self.names.index(name)]
         others = [other for other in self.free if other != name]
         left, _ = self._left_over(own, others)
-        width = SURE * self.noise / left if left > 1e-9 else None
+        alone = float(np.linalg.norm(own))
+        width = SURE * self.noise / left if left > NOTHING * alone else None
         if width is not None and width < KNOWN:
             return Finding(True, width, {}, f"known to {_percent(width)} (95 %).")
-        alone = float(np.linalg.norm(own))
         if SURE * self.noise > KNOWN * alone:
             return Finding(False, width, {}, self._no_trace(own))
         partners, changes = self._imitation(own, others)

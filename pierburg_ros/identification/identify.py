@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import resimulated
@@ -23,7 +24,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-HELD = ("supply_voltage", "spring_stiffness", "gravity_torque", "torque_scale", "sensor_scale", "sensor_offset")
+HELD = ("supply_voltage", "spring_stiffness", "gravity_torque", "sensor_scale", "sensor_offset")
 """Held unless freed: the supply can be measured, input and angle leave the scale of all torques open, and a sensor that
 is off would be mended by the load."""
 TRAINED_SHARE = 0.7
@@ -68,7 +69,13 @@ class Identification:
             "ci95": interval,
             "identifiable": finding.identifiable,
             "fixed": fixed,
+            **self._fixed_by(name, fixed),
         }
+
+    def _fixed_by(self, name: str, fixed: bool) -> dict[str, str]:
+        """What the description says of a fixed parameter, if anything."""
+        declared = self.model.actuator.parameters.get(name)
+        return {"fixed_by": declared.fixed_by} if fixed and declared is not None and declared.fixed_by else {}
 
     def _static(self) -> dict[str, Any] | None:
         """D_c and D_pre of the settled angles, or where those are too few, of the fit."""
@@ -95,22 +102,30 @@ def identify(
     `jobs` is the number of simulations at a time, by default one for each core.
     """
     for recording in recordings:
-        refuse_unmoved(recording)
+        refuse_unmoved(recording, model.actuator)
     names = free_names(model, free, fixed)
     fitted = fit(model, recordings, names, jobs=jobs)
-    spring = model.actuator.load == "spring" and fitted.model.values["spring_stiffness"] > 0.0
-    static = static_characteristic(recordings, model.actuator)
-    supply = fitted.model.values["supply_voltage"]
+    static = static_characteristic(recordings, model.actuator) if papers(model.actuator) else None
+    paper = papers(model.actuator) and fitted.model.values["spring_stiffness"] > 0.0
     return Identification(
         model,
         fitted,
         identifiability(fitted, recordings),
-        fitted_lumps(fitted) if spring else None,
+        fitted_lumps(fitted) if paper else None,
         static,
-        step_response(recordings, model.actuator, static, supply) if spring else None,
+        _steps(recordings, fitted.model, static) if paper else None,
         validation_rmse(fitted.model, recordings, names, jobs),
         float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings]))),
     )
+
+
+def papers(actuator: Actuator) -> bool:
+    """Whether the paper's own procedure applies: a spring against a duty, and an angle that is seen."""
+    return actuator.load == "spring" and actuator.drive == "voltage" and actuator.quantity != "speed"
+
+
+def _steps(recordings: Sequence[Recording], model: Model, static: StaticCharacteristic | None) -> StepResponse | None:
+    return step_response(recordings, model.actuator, static, model.values["supply_voltage"])
 
 
 def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()) -> tuple[str, ...]:
@@ -130,14 +145,14 @@ def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()
     return names
 
 
-def refuse_unmoved(recording: Recording) -> None:
+def refuse_unmoved(recording: Recording, actuator: Actuator) -> None:
     """InputError where the shaft does not move or the recording is too short to identify anything."""
     noise = noise_of(recording.time, recording.measured)
-    middle = np.percentile(recording.measured, [1.0, 99.0])
+    middle, unit = np.percentile(recording.measured, [1.0, 99.0]), actuator.shown(recording.unit)
     if recording.time.size < 100 or middle[1] - middle[0] < 20.0 * noise or np.ptp(recording.measured) == 0.0:
         raise InputError(
             f"{recording.name} shows no motion to identify from ({recording.time.size} samples, "
-            f"{middle[1] - middle[0]:.3g} {recording.unit} of travel, noise {noise:.2g} {recording.unit}). "
+            f"{middle[1] - middle[0]:.3g} {unit} of travel, noise {noise:.2g} {unit}). "
             "Record one of the recipes of 'pierburg experiment'."
         )
 
@@ -161,9 +176,9 @@ def validation_rmse(
 def unit_of(model: Model, name: str) -> str:
     """Unit of a parameter by its dotted name."""
     if "." not in name:
-        return model.actuator.parameters[name].unit
+        return model.actuator.shown(model.actuator.parameters[name].unit)
     effect, own = name.split(".")
-    return EFFECT[effect].parameter(own).unit
+    return model.actuator.shown(EFFECT[effect].parameter(own).unit)
 
 
 def _lump(lump: Lump) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.errors import InputError
@@ -19,20 +19,22 @@ def read(
     *,
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
+    signals: str | Path | Mapping[str, Any] | None = None,
     actuator: Actuator | None = None,
 ) -> Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
     A CSV has a header with `time` [s], an input, `duty` [1, from -1 to 1], `current` [A] or `torque` [N.m], and
     `hall_voltage` [V], `position` [rad] or `speed` [rad/s]. Where there are several, those of the `actuator` are
-    taken. `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock: stamp, clock, publish
-    or log. The result has `time` [s] and `measured`, both of shape (samples,), the `command` that drove the actuator
-    and the other channels that acted. InputError says what is missing, and how to name it.
+    taken. `signals` is a signal map, as a path or a mapping: which topic and field, or which column, each signal comes
+    from, and in which unit. `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock:
+    stamp, clock, publish or log. The result has `time` [s] and `measured`, both of shape (samples,), the `command`
+    that drove the actuator and the other channels that acted. InputError says what is missing, and how to name it.
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
     preferred = () if actuator is None else (actuator.input, actuator.quantity)
-    return read_recording(path, time=time, topics=topics, preferred=preferred)
+    return read_recording(path, time=time, topics=topics, signals=signals, preferred=preferred)
 
 
 def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> list[Recording]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.torques import sensor
@@ -18,6 +19,12 @@ def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> N
     record, is_angle = model.record()[0], _is_angle(model, quantity)
     values = np.asarray(measured, dtype=np.float64)
     return np.asarray(sensor.decode_all(record, values.ravel(), is_angle)).reshape(values.shape)
+
+
+def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
+    """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
+    shown = decoded(model, measured, quantity)
+    return cumulative_trapezoid(shown, time, initial=0.0) if quantity == "speed" else shown
 
 
 def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +12,11 @@ import numpy as np
 import yaml
 
 from pierburg_ros.actuators import Actuator, Scales
-from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
+from pierburg_ros.actuators.values import accepted, check, check_together, described
+from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.effects.effect import DRIVES, SENSORS
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_NODES, pack
-
-PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
-"""Parameters of effects that keep above or below a base parameter."""
-TOLD_APART = 1e-6
-"""Least difference of the Hall voltages at the stops, relative to the larger one: a converter of 20 bits tells it."""
 
 
 @dataclass(frozen=True)
@@ -35,21 +30,15 @@ class Model:
     @staticmethod
     def nominal(actuator: Actuator) -> Model:
         """The actuator as described."""
-        values = {name: p.nominal for name, p in actuator.parameters.items()}
-        values.update({f"{effect.id}.{name}": 0.0 for effect in EFFECTS for name in effect.names})
-        for effect, numbers in actuator.effects.items():
-            values.update({f"{effect}.{name}": value for name, value in numbers.items()})
-        model = Model(actuator, values)
-        model._check_pairs()
-        return model
+        return Model(actuator, described(actuator))
 
     def with_values(self, changes: Mapping[str, float]) -> Model:
         """The model with some values changed; InputError where a name is unknown or a value not allowed."""
         for name, value in changes.items():
-            self._check(name, value)
-        model = Model(self.actuator, {**self.values, **changes}, self.residual_torque)
-        model._check_pairs()
-        return model
+            check(self.actuator, name, value)
+        values = {**self.values, **changes}
+        check_together(self.actuator, values)
+        return Model(self.actuator, values, self.residual_torque)
 
     def with_residual(self, residual_torque: Mapping[str, Any] | None) -> Model:
         """The model with a residual torque: `angle` [rad], `velocity` [rad/s], `torque` [N.m] on their grid."""
@@ -64,16 +53,7 @@ class Model:
 
     def range(self, name: str) -> tuple[float, float]:
         """Accepted range of the parameter called `name`; InputError where there is none."""
-        if name in self.actuator.parameters:
-            parameter = self.actuator.parameters[name]
-            return parameter.minimum, parameter.maximum
-        if name not in self.values:
-            raise InputError(
-                f"There is no parameter {name} in actuator {self.actuator.name}; expected one of "
-                f"{', '.join(self.actuator.parameters)} or effect.parameter."
-            )
-        declared = DECLARED[name]
-        return min(declared.minimum, 0.0), declared.maximum
+        return accepted(self.actuator, name)
 
     @cached_property
     def scales(self) -> Scales:
@@ -89,38 +69,13 @@ class Model:
         a = self.actuator
         values = {**NEUTRAL, **self.values}
         kinds = DRIVES.index(a.drive), SENSORS.index(a.quantity)
-        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.residual_torque)
-
-    def _check(self, name: str, value: float) -> None:
-        minimum, maximum = self.range(name)
-        declared = self.actuator.parameters[name] if name in self.actuator.parameters else DECLARED[name]
-        absent = isinstance(value, Real) and not isinstance(value, bool) and value == 0.0 and minimum <= 0.0
-        if not absent:
-            replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(value, name)
-
-    def _check_pairs(self) -> None:
-        for name, declared in PAIRS.items():
-            value = self.values[name]
-            if value == 0.0:
-                continue
-            if declared.above is not None and value < self.values[declared.above]:
-                raise InputError(
-                    f"{name} is {value:g}; expected 0 (absent) or at least {declared.above}, "
-                    f"{self.values[declared.above]:g}. Change both together."
-                )
-            if declared.below is not None and value >= self.values[declared.below]:
-                raise InputError(
-                    f"{name} is {value:g}; expected less than {declared.below}, {self.values[declared.below]:g}."
-                )
-        ends = [self.values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
-        if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
-            raise InputError(
-                f"hall_voltage_closed and hall_voltage_open are both {ends[0]:g}; expected two voltages, which tell the"
-                " closed stop from the open one."
-            )
+        return pack(values, a.lower_stop, a.upper_stop, *kinds, a.sensor_span, self.scales, self.residual_torque)
 
     def as_mapping(self) -> dict[str, Any]:
-        """The model file's content: what differs from nominal, the effects that act, the residual torque."""
+        """The model file's content: what differs from nominal, the effects that act, the residual torque.
+
+        An actuator of the user's own stands in it as described, so that the file works wherever it is taken.
+        """
         parameters = {
             name: self.values[name] for name, p in self.actuator.parameters.items() if self.values[name] != p.nominal
         }
@@ -128,7 +83,8 @@ class Model:
             effect: {name: self.values[f"{effect}.{name}"] for name in EFFECT[effect].names}
             for effect in {**self.actuator.effects, **dict.fromkeys(self.active_effects)}
         }
-        content: dict[str, Any] = {"actuator": self.actuator.name, "parameters": parameters, "effects": effects}
+        actuator = self.actuator.description or self.actuator.name
+        content: dict[str, Any] = {"actuator": actuator, "parameters": parameters, "effects": effects}
         if self.residual_torque is not None:
             content["residual_torque"] = {
                 key: np.asarray(self.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from pierburg_ros.actuators import Actuator, read_actuator
+from pierburg_ros.actuators import SHIPPED, Actuator, actuator_of, read_actuator
+from pierburg_ros.actuators.values import check
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import check_magnitude, read_yaml, reading
@@ -21,25 +22,23 @@ FORM = "a model file (YAML)"
 def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None = None) -> Model:
     """The model in `source`, a path or the content of a model file, of `actuator` where given."""
     if isinstance(source, Mapping):
-        return _model(dict(source), actuator, "model", lambda *_: "")
+        return _model(dict(source), actuator, "model", lambda *_: "", Path())
     path = Path(source)
     with reading(path, FORM):
         document = read_yaml(path, FORM)
         if not isinstance(document.content, dict):
             raise InputError(f"{path.name} holds no model; expected {', '.join(SECTIONS)}.")
-        return _model(document.content, actuator, path.name, document.line)
+        return _model(document.content, actuator, path.name, document.line, path.parent)
 
 
-def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line: Any) -> Model:
+def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line: Any, folder: Path) -> Model:
     for key in content:
         if key not in SECTIONS:
             raise InputError(f"{label}{line(key)}: unknown {key}; expected {', '.join(SECTIONS)}.")
     if actuator is None:
         if "actuator" not in content:
             raise InputError(f"{label} names no actuator; expected for example `actuator: pierburg`.")
-        if not isinstance(content["actuator"], str):
-            raise InputError(f"{label}{line('actuator')}: actuator is no name; expected for example `pierburg`.")
-        actuator = read_actuator(content["actuator"])
+        actuator = _actuator(content["actuator"], f"{label}{line('actuator')}", folder)
     model = Model.nominal(actuator)
     changes: dict[str, float] = {}
     for name, value in _section(content, "parameters", label, line).items():
@@ -51,6 +50,23 @@ def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line:
         return model.with_values(changes).with_residual(_residual(content))
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
+
+
+def _actuator(given: object, place: str, folder: Path) -> Actuator:
+    """The actuator of a model file in a `folder`: a shipped name, the path of a description, or the description."""
+    if isinstance(given, dict):
+        return actuator_of(given, f"{place}: actuator")
+    if not isinstance(given, str):
+        raise InputError(
+            f"{place}: actuator is {given!r:.60}; expected a name like `pierburg`, a path or a description."
+        )
+    beside = folder / given
+    if given in SHIPPED or not beside.exists():
+        try:
+            return read_actuator(given)
+        except InputError as error:
+            raise InputError(f"{place}: {error}") from None
+    return read_actuator(beside)
 
 
 def _residual(content: dict[str, Any]) -> dict[str, Any] | None:
@@ -111,6 +127,6 @@ def _try(model: Model, change: dict[str, Any], place: str, base_only: bool = Fal
     try:
         if base_only and "." in str(name):
             raise InputError(f"{name} belongs under effects.")
-        model._check(name, change[name])
+        check(model.actuator, name, change[name])
     except InputError as error:
         raise InputError(f"{place}: {error}") from None

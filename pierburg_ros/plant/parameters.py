@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.actuators import Scales
 from pierburg_ros.effects import EFFECTS, Effect
 
 RESIDUAL_NODES = 24
@@ -46,11 +47,14 @@ RESIDUAL = np.dtype(
     ]
 )
 
+OWN = np.dtype([("torque", np.float64), ("angle", np.float64), ("time", np.float64)])
+"""What is large for the actuator [N.m, rad, s]: the tolerances of the kernels are shares of these."""
+
 PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
     + [("drive", np.int64), ("sensor", np.int64), ("sensor_span", np.float64)]
-    + [("serial", np.int64), ("finest", np.float64)]
+    + [("own", OWN), ("serial", np.int64), ("finest", np.float64)]
     + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
@@ -69,6 +73,7 @@ def pack(
     drive: int,
     sensor: int,
     sensor_span: float,
+    scales: Scales,
     residual: Mapping[str, Any] | None = None,
 ) -> np.ndarray:
     """Parameter record, shape (1,), from flat dotted names.
@@ -87,6 +92,7 @@ def pack(
         record[effect.id] = tuple(values[f"{effect.id}.{name}"] for name in effect.names)
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
     record["drive"], record["sensor"], record["sensor_span"] = drive, sensor, sensor_span
+    record["own"] = scales.torque, scales.angle, scales.time
     _pack_residual(record, residual)
     present = [effect for effect in EFFECTS if effect.acts(values)]
     creeping = {effect.stage for effect in present if effect.state and effect.stage in _OUTSIDE}

@@ -12,15 +12,16 @@ from pierburg_ros.plant.motion import steady
 from pierburg_ros.plant.state import QUEUE
 from pierburg_ros.plant.torques import drive, sensor
 
-LONGEST = 0.002
-"""Longest stretch [s] over which input in force and resistance stay, and the shaft's velocity for the sensor's lag."""
+LONGEST = 0.021
+"""Longest stretch over which input in force and resistance stay, and the shaft's velocity for the sensor's lag, as a
+share of the actuator's own time; 2 ms for the valve."""
 FORGOTTEN = 20.0
 """Time constants of the winding after which its current has forgotten the command before, to rounding."""
 EVENTS = 20_000
 """More events than this in one interval mean that a parameter set cannot be simulated."""
-SUSTAINED = 1e6
-"""Events a second of simulated time that may go on: an event takes up to a microsecond, so that no run takes much
-longer than the motion itself. The nominal valve has about 2,000."""
+SUSTAINED = 1e5
+"""Events in the actuator's own time that may go on: an event takes up to a microsecond, so that no run takes much
+longer than the motion of the valve itself, which has about 200."""
 BURST = 50 * EVENTS
 """Events beyond those, as at an impact: about a second of computing."""
 
@@ -110,7 +111,7 @@ def _act(p, s, command, supply, closed_bridge, duration):
         return
     stretches = 1
     if p.creeps:
-        stretches = max(math.ceil(duration / LONGEST - 1e-6), 1)
+        stretches = max(math.ceil(duration / (LONGEST * p.own.time) - 1e-6), 1)
     stretch = duration / stretches
     for _ in range(stretches):
         in_force = command
@@ -139,7 +140,7 @@ def _mechanics(p, s, duration):
             drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
         remaining -= used
         if not remaining > 0.0:
-            s.events = max(s.events + event - SUSTAINED * duration, 0.0)
+            s.events = max(s.events + event - SUSTAINED * duration / p.own.time, 0.0)
             s.time = end
             return
     s.angle = s.velocity = math.nan

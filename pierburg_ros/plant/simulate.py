@@ -13,13 +13,14 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import new_state
+from pierburg_ros.plant.state import STATE, new_state, place
 from pierburg_ros.plant.torques.sensor import measured, quantised
 from pierburg_ros.workers import workers
 
-LONG_BEFORE = 10.0
-"""Time [s] after which neither a delayed command nor a current is still on its way."""
+LONG_BEFORE = 1e9
+"""Time [s] after which neither a delayed command nor a current is still on its way: longer than any accepted one."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,16 @@ def simulate(
     return output
 
 
+def motor_torque(model: Model, inputs: Inputs, time: ArrayLike) -> Signal:
+    """Torque [N.m] at the shaft that the inputs of a current or torque drive make at each `time` [s]."""
+    value = {**NEUTRAL, **model.values}
+    drive = model.actuator.drive
+    per_input = value["torque_scale"] if drive == "torque" else value["gear_ratio"] * value["torque_constant"]
+    command = inputs.command if inputs.enabled is None else np.where(inputs.enabled, inputs.command, 0.0)
+    place = np.searchsorted(inputs.time, np.asarray(time, dtype=float), side="right") - 1
+    return np.asarray(per_input * np.where(place < 0, 0.0, command[np.maximum(place, 0)]))
+
+
 def refuse_unsimulated(model: Model, simulated: Signal, times: Signal) -> None:
     """Say that and from when on a run is not a number: InputError."""
     missing = np.flatnonzero(~np.isfinite(simulated))
@@ -128,6 +139,20 @@ def simulate_many(
     return output
 
 
+def simulate_stretches(
+    model: Model, inputs: Inputs, sample_times: ArrayLike, first: NDArray[np.int64], angle: Signal, velocity: Signal
+) -> Signal:
+    """`simulate` in stretches that begin at the samples `first`, each at its own angle [rad] and velocity [rad/s].
+
+    `first`, `angle` and `velocity` are of shape (stretches,).
+    """
+    times = _increasing(sample_times)
+    output = np.empty(times.size)
+    states = np.zeros(first.size, STATE)
+    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, output)
+    return output
+
+
 def _run_into(
     output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
 ) -> None:
@@ -172,6 +197,19 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
         supply = supply_voltage[earlier - 1] if supply_voltage.size > 0 else np.nan
         closed = enabled[earlier - 1] if enabled.size > 0 else True
         recall(p, s, input_times[:earlier], command[:earlier], supply, closed)
+
+
+@kernel
+def run_stretches(
+    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, output
+):
+    """`run` from each of the samples `first` to the next, at its own angle and velocity; `states` are all zeros."""
+    for stretch in range(first.size):
+        end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
+        times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
+        place(p, states[stretch], angle[stretch], velocity[stretch])
+        begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
+        run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
 
 
 @kernel

@@ -89,7 +89,7 @@ def place(p, s, angle, velocity):
     s.flank = 1
     s.supply = np.nan
     s.closed_bridge = True
-    s.step = 1.0
+    s.step = math.inf
     if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
         s.presliding.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
     s.presliding.motor_bristle = s.presliding.bristle

@@ -8,12 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from pierburg_ros.proof.formulation.values import CATALOGUE, NOMINAL, OUTSIDE
-from pierburg_ros.proof.strengths import drift, strength
+from pierburg_ros.proof.strengths import drift, remainder, strength
 from pierburg_ros.proof.trial import Change, Trial
 
 Random = np.random.Generator
 WITHOUT_EFFECT = ("consistent", "drift", "change")
-KINDS = (*CATALOGUE, *WITHOUT_EFFECT, "two", "outside")
+WITH_REMAINDER = ("beside", "remainder")
+"""One effect beside physics outside the catalogue that leaves ten times the noise, and that physics alone."""
+KINDS = (*CATALOGUE, *WITHOUT_EFFECT, "two", "outside", *WITH_REMAINDER)
+BESIDE = tuple(effect for effect in CATALOGUE if effect != "sensor_quantization")
+"""Effects that stand beside a remainder, in turn; steps of the converter are read from the samples, not searched."""
 OVER_GRAPH = {**dict.fromkeys(CATALOGUE, 1), "consistent": 3, "drift": 3}
 """Trials of each kind in the smaller run over the ROS graph."""
 NOISES = (0.001, 0.002, 0.002, 0.004, 0.004)  # V
@@ -24,6 +28,8 @@ PUBLISHED = {
     "change": 10,
     "two": 12,
     "outside": 12,
+    "beside": 80,
+    "remainder": 20,
 }
 """Trials of each kind in the published run: 20 a catalogue effect, 100 without any."""
 
@@ -40,6 +46,7 @@ def draw(kind: str, number: int, seed: int) -> Trial:
         effects=_effects(kind, number, random),
         drifted=_drifted(kind, closed_loop, random),
         change=_change(random) if kind == "change" else None,
+        remainder=remainder(random) if kind in WITH_REMAINDER else {},
         closed_loop=closed_loop,
         controller=_controller(random) if closed_loop else {},
         noise=float(random.choice(NOISES)),
@@ -59,6 +66,8 @@ def _effects(kind: str, number: int, random: Random) -> dict[str, float]:
         return strength(kind, random)
     if kind == "outside":
         return strength(list(OUTSIDE)[number // 2 % len(OUTSIDE)], random)
+    if kind == "beside":
+        return strength(BESIDE[number // 2 % len(BESIDE)], random)
     if kind == "two":
         first, second = random.choice(list(CATALOGUE), 2, replace=False)
         return {**strength(str(first), random), **strength(str(second), random)}

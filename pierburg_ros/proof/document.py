@@ -67,6 +67,11 @@ def headline(run: Run) -> dict[str, Share]:
         "Rightly named: unseen data within 1.1 of the noise": tally.share(results, tally.unseen_right),
         "Two effects: verdict and both names": tally.share(kind(results, "two"), lambda r: r["right"]),
         "Outside the catalogue: unexplained": tally.share(kind(results, "outside"), lambda r: r["right"]),
+        "Effect beside a remainder, moving the signal more than that: exact name": tally.share(
+            kind(results, "beside"), lambda r: r["right"] if r["shown"] else None
+        ),
+        "Remainder alone: nothing named": tally.share(kind(results, "remainder"), lambda r: r["right"]),
+        "Recordings given names of which one is not there": tally.share(results, tally.false_name),
         "No answer at all": tally.share(results, lambda r: r["failure"] is not None),
     }
 

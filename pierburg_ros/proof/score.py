@@ -114,9 +114,13 @@ def ties_reported(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> boo
 def named_rightly(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], shown: bool) -> bool:
     """Verdict and exact names; of an effect the recording does not show, silence is right as well.
 
-    Of several effects, those that the recording does not show beside the others may be left out.
+    Of several effects, those that the recording does not show beside the others may be left out. Beside a remainder the
+    names are asked for, whether or not the verdict says that something is left.
     """
     named = {effect["id"] for effect in diagnosis["effects"]}
+    if truth.get("remainder"):
+        concealed = {effect["id"] for effect in truth["effects"]}
+        return named == concealed or (not shown and not named)
     if truth["verdict"] == "unexplained":
         exact = diagnosis["verdict"] == "unexplained"
     else:

@@ -11,6 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pierburg_ros.proof.formulation.values import NOMINAL
+
 Random = np.random.Generator
 Draw = Callable[[Random], float]
 
@@ -68,6 +70,7 @@ STRENGTHS: dict[str, dict[str, Draw]] = {
     "hysteretic_spring": {"stiffness": spread(0.2, 1.0), "yield_torque": spread(0.03, 0.08)},
     "square_drag": {"coefficient": spread(0.002, 0.02)},
     "detent": {"torque": spread(0.03, 0.1), "center": even(0.3, 1.2), "width": spread(0.08, 0.25)},
+    "ageing_friction": {"growth": spread(0.04, 0.2), "time_constant": spread(0.5, 5.0)},
 }
 
 
@@ -76,6 +79,17 @@ def strength(effect: str, random: Random) -> dict[str, float]:
     special = SPECIAL.get(effect)
     drawn = special(random) if special else {name: draw(random) for name, draw in STRENGTHS[effect].items()}
     return {f"{effect}.{name}": value for name, value in drawn.items()}
+
+
+def remainder(random: Random) -> dict[str, float]:
+    """What always remains on a real bench, small: a viscoelastic branch of 5 % of the spring, and friction that grows
+    by 4 % while the shaft rests."""
+    return {
+        "relaxation.stiffness": 0.05 * NOMINAL["spring_stiffness"],
+        "relaxation.time_constant": spread(1.0, 6.0)(random),
+        "ageing_friction.growth": 0.04,
+        "ageing_friction.time_constant": spread(0.5, 5.0)(random),
+    }
 
 
 def _direction(random: Random) -> dict[str, float]:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from pierburg_ros.proof.concealment import WITHOUT_EFFECT
+from pierburg_ros.proof.concealment import WITH_REMAINDER, WITHOUT_EFFECT
+from pierburg_ros.proof.formulation.values import CATALOGUE
 from pierburg_ros.proof.intervals import Share
 from pierburg_ros.proof.score import UNSEEN_TOLERANCE, WINDOW_SHARE
 
@@ -28,7 +29,12 @@ def effect_free(results: Iterable[Result]) -> list[Result]:
 
 def shown(results: Iterable[Result]) -> list[Result]:
     """Trials with one effect of the catalogue that their recording tells from drift."""
-    return [r for r in results if r["kind"] not in (*WITHOUT_EFFECT, "two", "outside") and r["shown"]]
+    return [r for r in results if r["kind"] in CATALOGUE and r["shown"]]
+
+
+def false_name(result: Result) -> bool | None:
+    """Whether an effect is named that is not there; None where none is named."""
+    return bool(set(result["named"]) - set(result["concealed"])) if result["named"] else None
 
 
 def windows_right(result: Result) -> bool | None:
@@ -40,7 +46,7 @@ def windows_right(result: Result) -> bool | None:
 
 def unseen_right(result: Result) -> bool | None:
     """Whether the model follows unseen data to the noise; None where it is not asked for."""
-    if result["kind"] in ("outside", "change") or not result["right"]:
+    if result["kind"] in ("outside", "change", *WITH_REMAINDER) or not result["right"]:
         return None
     return result["unseen_ratio"] is not None and bool(result["unseen_ratio"] <= UNSEEN_TOLERANCE)
 

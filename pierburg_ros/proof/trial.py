@@ -37,6 +37,7 @@ UNITS = {
     "step": {"": "V"},
     "yield_torque": {"": "N.m"},
     "exposure": {"": "rad.s"},
+    "growth": {"": "1"},
 }
 
 
@@ -67,6 +68,7 @@ class Trial:
     drifted: Mapping[str, float]
     change: Change | None
     closed_loop: bool
+    remainder: Mapping[str, float] = field(default_factory=dict)  # physics outside the catalogue, beside the effects
     controller: Mapping[str, float] = field(default_factory=dict)
     noise: float = 0.002  # V
     converter_step: float = 5.0 / 4096.0  # V, resolution of the logger, not of the valve's own sensor
@@ -81,7 +83,7 @@ class Trial:
         base = {**NOMINAL, **self.drifted}
         if self.change is not None:
             base[self.change.parameter] = self.change.before
-        return {**base, **self.effects}
+        return {**base, **self.remainder, **self.effects}
 
     @property
     def effect_ids(self) -> tuple[str, ...]:
@@ -96,7 +98,7 @@ class Trial:
     @property
     def verdict(self) -> str:
         """The verdict that is right where the recording shows what is hidden."""
-        if self.kind == "outside":
+        if self.kind == "outside" or self.remainder:
             return "unexplained"
         if self.effects:
             return "missing_physics"
@@ -115,6 +117,7 @@ def truth(trial: Trial) -> dict[str, Any]:
         "verdict": trial.verdict,
         "effects": [] if outside else _labelled(trial),
         "drifted": dict(trial.drifted),
+        "remainder": dict(trial.remainder),
         "changes": [vars(change)] if change else [],
         "not_in_catalogue": trial.effect_ids[0] if outside else None,
         "outside_parameters": _labelled(trial)[0]["parameters"] if outside else {},
@@ -139,7 +142,7 @@ def _labelled(trial: Trial) -> list[dict[str, Any]]:
 
 
 def concealed_values(label: Mapping[str, Any]) -> tuple[dict[str, float], dict[str, float]]:
-    """Flat values of what a label says was concealed, and of what had drifted at the start."""
+    """Flat values of what a label says was concealed, and of what is there beside it at the start."""
     outside = label["not_in_catalogue"]
     concealed = [{"id": outside, "parameters": label["outside_parameters"]}] if outside else label["effects"]
     effects = {
@@ -147,4 +150,4 @@ def concealed_values(label: Mapping[str, Any]) -> tuple[dict[str, float], dict[s
         for effect in concealed
         for name, given in effect["parameters"].items()
     }
-    return effects, dict(label["drifted"])
+    return effects, {**label["drifted"], **label.get("remainder", {})}

@@ -48,12 +48,13 @@ class Visibility:
     recalibrated_distance: float  # from the best explanation by drift of anything
     share_of_time: float  # smallest share of time that holds 80 % of the effect's energy
     bounds: dict[str, float]  # Cramer-Rao bound of each concealed parameter, deviation over value
+    remainder_rms: float = 0.0  # V, what physics outside the catalogue beside the effect leaves after such a refit
     faint: tuple[str, ...] = ()  # of several effects, those that one drift can stand for beside the others
 
     @property
     def shown(self) -> bool:
-        """Whether the recording tells the effect from drift."""
-        return self.distance >= VISIBLE
+        """Whether the recording tells the effect from drift, and it moves the signal more than what else remains."""
+        return self.distance >= VISIBLE and self.recalibrated_rms >= self.remainder_rms
 
     def label(self) -> dict[str, Any]:
         """As it stands in the truth."""
@@ -139,6 +140,8 @@ def visibility(trial: Trial, run: Recorded) -> Visibility:
     if not trial.effects:
         return Visibility(noise, 0.0, nominal_rmse, 0.0, 0.0, 0.0, 0.0, {})
     full, bare = ideal(trial.values, run), ideal(trial.bare.values, run)
+    clean = replace(trial, effects={}, remainder={})
+    left = refitted(bare, clean.values, LUMPS, run) if trial.remainder else np.zeros(1)
     nearest, recalibrated = nearest_drift(full, trial.bare, run, noise)
     return Visibility(
         noise=noise,
@@ -147,6 +150,7 @@ def visibility(trial: Trial, run: Recorded) -> Visibility:
         recalibrated_rms=float(np.sqrt(np.mean(recalibrated**2))),
         distance=nearest,
         recalibrated_distance=distance(recalibrated, noise),
+        remainder_rms=float(np.sqrt(np.mean(left**2))),
         share_of_time=share_holding(full - bare),
         bounds=relative_bounds(trial, run, noise),
         faint=faint(trial, full, run, noise) if len(trial.effect_ids) > 1 else (),

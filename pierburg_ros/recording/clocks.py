@@ -8,12 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.recording.decoding import DECODERS, numbers
 from pierburg_ros.recording.formats import cdr
-from pierburg_ros.recording.formats.messages import Integers, Messages
-from pierburg_ros.recording.roles import MEASURED, Topics
+from pierburg_ros.recording.formats.definitions import HEADER, first_field
+from pierburg_ros.recording.formats.messages import LATEST, Integers, Messages
+from pierburg_ros.recording.signal_map import TimeSource
+from pierburg_ros.recording.signals import MEASURED
+from pierburg_ros.recording.topics import Found, Topics
 
 STAMPED_BESIDE = ("hall_voltage", "applied_duty")
-"""Topics that the plant publishes once for each `joint_states`, so that they share its stamp."""
+"""Signals that the plant publishes once for each `joint_states`, so that they share its stamp."""
 SHARED = 0.9
 """Least share of the range of sequence numbers that two topics of one tick have in common."""
 TOLERANCE = 0.1
@@ -26,12 +30,17 @@ FEW = 10
 
 @dataclass(frozen=True)
 class Timed:
-    """The messages of a role that have a time [ns], and the clock it comes from."""
+    """The messages of a signal that have a time [ns], and the clock it comes from."""
 
-    messages: Messages
+    found: Found
     kept: NDArray[np.bool_]
     time: Integers
     source: str
+
+    @property
+    def messages(self) -> Messages:
+        """The messages, those without a time among them."""
+        return self.found.messages
 
 
 def check_forward(name: str, timed: Timed) -> None:
@@ -53,9 +62,10 @@ class Clocks:
     def __init__(self, topics: Topics, choice: str | None) -> None:
         self.name = topics.bag.name
         self.choice = choice
-        self.joints = topics.find("joint_states") if choice in (None, "stamp") else None
-        self.stamps = np.zeros(0, np.int64) if self.joints is None else cdr.stamp(self.joints)
-        self.ticks = topics.find("clock") if choice in (None, "clock") else None
+        self.asked = topics.chosen.time
+        self.others = topics.stamped() if choice in (None, "stamp") else None
+        self.stamps = None if self.others is None else self.own_stamps(self.others)
+        self.ticks = topics.ticks() if choice in (None, "clock") else None
         self.sources = {
             "stamp": self.stamped,
             "clock": self.clocked,
@@ -63,39 +73,76 @@ class Clocks:
             "log": self.logged,
         }
 
-    def time(self, role: str, messages: Messages) -> Timed | None:
-        """The messages of `role` with their times; None where the chosen clock has none for them."""
+    def time(self, found: Found) -> Timed | None:
+        """The messages of a signal with their times; None where the chosen clock has none for them."""
         for source in self.sources if self.choice is None else (self.choice,):
-            found = self.sources[source](role, messages)
-            if found is not None:
-                timed = Timed(messages, *found, source)
+            times = self.sources[source](found.signal, found.messages)
+            if times is not None:
+                timed = Timed(found, *times, source)
                 check_forward(self.name, timed)
                 return timed
         return None
 
-    def stamped(self, role: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
-        """Stamps of `joint_states`, for itself and for what the plant publishes beside it."""
-        if self.joints is None or not np.any(self.stamps):
+    def stamped(self, signal: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
+        """Stamps that the messages carry, or those of joint states that the plant publishes beside them."""
+        stamps = self.own_stamps(messages)
+        if stamps is not None:
+            return np.ones(len(messages), bool), stamps
+        if self.others is None or self.stamps is None or signal not in STAMPED_BESIDE:
             return None
-        if role == "joint_states":
-            return np.ones(len(messages), bool), self.stamps
-        return matched(messages, self.joints, self.stamps) if role in STAMPED_BESIDE else None
+        return matched(messages, self.others, self.stamps)
 
-    def clocked(self, role: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
+    def own_stamps(self, messages: Messages) -> Integers | None:
+        """Stamps [ns] in the messages themselves: in the field of a map, or else in their header."""
+        asked = self.asked
+        if asked is not None and asked.path is not None and self.others is not None:
+            same = messages.topic == asked.topic or messages.type == self.others.type
+            if same:
+                return asked_stamps(messages, asked)
+        stamps = cdr.stamp(messages) if is_headed(messages) else None
+        return stamps if stamps is not None and np.any(stamps) else None
+
+    def clocked(self, signal: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
         """The last `/clock` before each message; samples before the first go, inputs begin with it."""
         if self.ticks is None:
             return None
         place = np.searchsorted(self.ticks.place, messages.place) - 1
-        kept = (place >= 0) | (role not in MEASURED)
+        kept = (place >= 0) | (signal not in MEASURED)
         return kept, cdr.stamp(self.ticks)[np.maximum(place[kept], 0)]
 
-    def published(self, role: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
+    def published(self, signal: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
         """Publish times, where the file has them."""
         return (np.ones(len(messages), bool), messages.publish_time) if np.any(messages.publish_time) else None
 
-    def logged(self, role: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
+    def logged(self, signal: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:
         """Log times, which every file has."""
         return np.ones(len(messages), bool), messages.log_time
+
+
+def is_headed(messages: Messages) -> bool:
+    """Whether the type of the messages begins with a std_msgs/Header, and so with a stamp."""
+    if not len(messages) or messages.encoding != "cdr":
+        return False
+    if messages.type == cdr.JOINT_STATE:
+        return True
+    return messages.type not in DECODERS and first_field(messages.type, messages.definition) == HEADER
+
+
+def asked_stamps(messages: Messages, asked: TimeSource) -> Integers:
+    """The stamps [ns] in the field that a map names; a number is in the unit of the map."""
+    read = numbers(messages, asked.path, asked.origin)
+    if not np.all(read.kept):
+        raise InputError(f"{asked.origin}: {messages.topic} has messages without that field, expected a time in each.")
+    if read.is_stamp:
+        return read.raw.astype(np.int64)
+    factor = round(asked.unit * 1e9)
+    largest = float(np.max(np.abs(read.raw.astype(np.float64)), initial=0.0))
+    if not largest * factor < LATEST:
+        raise InputError(
+            f"{asked.origin}: {messages.topic} has the time {largest:g} in units of {asked.unit:g} s, expected one"
+            " before the year 2262. Check the unit: s, ms, us or ns."
+        )
+    return read.raw * factor if read.raw.dtype == np.int64 else np.round(read.raw * factor).astype(np.int64)
 
 
 def matched(messages: Messages, stamped: Messages, stamps: Integers) -> tuple[NDArray[np.bool_], Integers] | None:

@@ -14,16 +14,17 @@ import numpy as np
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import check_magnitude, reading
 from pierburg_ros.recording.clocks import Clocks, Timed, check_one_clock
-from pierburg_ros.recording.columns import COLUMNS, Columns, tabulated
-from pierburg_ros.recording.formats import cdr, format_of
-from pierburg_ros.recording.formats.messages import Messages
+from pierburg_ros.recording.columns import Columns
+from pierburg_ros.recording.formats import format_of
+from pierburg_ros.recording.formats.messages import Bag, Wanted
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, Samples
-from pierburg_ros.recording.roles import DRIVING, MEASURED, ROLES, Topics, check_names, in_order, last_name
+from pierburg_ros.recording.signal_map import Given, SignalMap, signal_map
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, SIGNALS, TIME, in_order, last_name
+from pierburg_ros.recording.tables import Tables, read_tables, tabulated
+from pierburg_ros.recording.topics import TICKS, Found, Topics
 
 SOURCES = ("stamp", "clock", "publish", "log")
-DECODERS = {cdr.FLOAT64: cdr.float64, cdr.BOOL: cdr.boolean, cdr.JOINT_STATE: cdr.position}
-OPTIONAL = ("supply_voltage", "temperature", "enabled", "setpoints")
 LONGEST = 7 * 86_400.0
 """Time [s] that a recording may span: a week. What acts all the time is simulated in steps of 2 ms, and a week of them
 takes about two minutes."""
@@ -38,30 +39,34 @@ def read_recording(
     *,
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
+    signals: Given = None,
     preferred: Collection[str] = (),
 ) -> Recording:
     """The recording at `path`.
 
-    `topics` names the topic (in a CSV the column) of a role, e.g. {"duty": "/bench/pwm"}; `time` chooses the
-    clock, one of stamp, clock, publish and log, where the best one recorded is not wanted. `preferred` are the input
-    and the quantity to take where the recording holds several, e.g. ("current", "speed").
+    `signals` is a signal map, its file or its content; `topics` names the topic (in a CSV the column) of a signal, e.g.
+    {"duty": "/bench/pwm"}, in place of the map's; `time` chooses the clock, one of stamp, clock, publish and log,
+    where the best one recorded is not wanted. `preferred` are the input and the quantity to take where the recording
+    holds several, e.g. ("current", "speed").
     """
-    path, named = Path(path), dict(topics or {})
+    path, chosen = Path(path), signal_map(signals, topics or {})
     if time is not None and time not in SOURCES:
         raise InputError(f"--time found {time!r}, expected one of {', '.join(SOURCES)}. Choose one of those.")
-
-    def wanted(name: str) -> bool:
-        return last_name(name) in ROLES or name in COLUMNS.values() or name in named.values()
-
     with reading(path, "a recording"), np.errstate(all="ignore"):
-        found = format_of(path).read(path, wanted)
-        check_names(named, COLUMNS if isinstance(found, Columns) else ROLES)
-        if isinstance(found, Columns):
-            made = tabulated(found, time, named, preferred)
+        found = read_tables(path, chosen) if chosen.files else format_of(path).read(path, wanted(chosen))
+        if isinstance(found, Bag):
+            made = assemble(Topics(found, chosen), time, preferred)
         else:
-            made = assemble(Topics(found, named), time, preferred)
+            made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen, preferred)
         check_bounds(made)
     return replace(made, path=path)
+
+
+def wanted(chosen: SignalMap) -> Wanted:
+    """Whether a topic or a column may hold a signal, by its name."""
+    topics = {name for signal in SIGNALS.values() for name in signal.topics} | {TICKS}
+    columns = {*(signal.column for signal in SIGNALS.values()), TIME}
+    return lambda name: last_name(name) in topics or name in columns or chosen.wants(name)
 
 
 def check_bounds(recording: Recording) -> None:
@@ -87,23 +92,13 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         "measured": first_of(topics, MEASURED, preferred, "measured signal"),
         "command": first_of(topics, DRIVING, preferred),
     }
-    found |= {role: (role, messages) for role in OPTIONAL if (messages := topics.find(role)) is not None}
-    clocks = Clocks(topics, choice)
-    timed: dict[str, Timed] = {}
-    for signal, (role, messages) in found.items():
-        times = clocks.time(role, messages)
-        if times is not None and times.time.size:
-            timed[signal] = times
-        elif signal in ("measured", "command", *ACTING):
-            raise InputError(
-                f"{name}: {messages.topic} has no {choice} time, expected one for every message."
-                " Choose another clock with --time {stamp,clock,publish,log}."
-            )
-    for signal in timed:
-        check_one_clock(name, timed["measured"], timed[signal])
+    found |= {signal: each for signal in OPTIONAL if (each := topics.find(signal)) is not None}
+    timed = timed_by(Clocks(topics, choice), found)
+    for other in timed.values():
+        check_one_clock(name, timed["measured"], other)
     origin = timed["measured"].time[0]
     channels = {signal: Channel(*samples(name, times, int(origin))) for signal, times in timed.items()}
-    quantity, driven = MEASURED[found["measured"][0]], DRIVING[found["command"][0]]
+    quantity, driven = MEASURED[found["measured"].signal], DRIVING[found["command"].signal]
     first = channels.pop("measured")
     sources = dict.fromkeys(timed[signal].source for signal in ("measured", "command"))
     losses = lost({**channels, "measured": first}, timed, {"measured": quantity, "command": driven})
@@ -118,6 +113,26 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         input=driven,
         path=None,
     )
+
+
+def timed_by(clocks: Clocks, found: Mapping[str, Found]) -> dict[str, Timed]:
+    """The signals that have a time; what drives the actuator and what was measured must have one."""
+    timed: dict[str, Timed] = {}
+    for signal, each in found.items():
+        times = clocks.time(each)
+        if times is not None and times.time.size:
+            timed[signal] = times
+        elif signal in ("measured", "command", *ACTING):
+            raise InputError(
+                f"{clocks.name}: {each.messages.topic} has no {clocks.choice} time, expected one for every message."
+                " Choose another clock with --time {stamp,clock,publish,log}."
+            )
+    if clocks.asked and clocks.choice is None and all(times.source != "stamp" for times in timed.values()):
+        raise InputError(
+            f"{clocks.asked.origin} names stamps of {clocks.asked.topic}, which no signal shares, expected a topic that"
+            " a signal comes from, or one with a message for each of its samples."
+        )
+    return timed
 
 
 def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], names: Mapping[str, str]) -> tuple[Loss, ...]:
@@ -137,7 +152,7 @@ def lost(channels: Mapping[str, Channel], timed: Mapping[str, Timed], names: Map
 
 def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
     """Times [s] since `origin` [ns] and decoded values of the messages that have a time."""
-    values = DECODERS[timed.messages.type](timed.messages)[timed.kept]
+    values = timed.found.values[timed.kept]
     time: Samples = (timed.time - origin).astype(np.float64) * 1e-9
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
@@ -148,23 +163,24 @@ def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
     return time, values
 
 
-def first_of(
-    topics: Topics, roles: Mapping[str, str], preferred: Collection[str], what: str = ""
-) -> tuple[str, Messages]:
-    """Role and messages of the first of `roles` that has any; only those that a person named where there are such."""
-    order = in_order(roles, topics.named, preferred)
-    for role in order[: len(topics.named.keys() & roles.keys()) or None]:
-        if (messages := topics.find(role)) is not None:
-            return role, messages
-    raise missing(topics, what or roles[order[0]], roles[order[0]], order)
+def first_of(topics: Topics, signals: Mapping[str, str], preferred: Collection[str], what: str = "") -> Found:
+    """The first of `signals` that has messages; only those that a person chose where there are such."""
+    order = in_order(signals, topics.chosen.sources, preferred)
+    for signal in order:
+        if (found := topics.find(signal)) is not None:
+            return found
+    raise missing(topics, what or signals[order[0]], signals[order[0]], order)
 
 
-def missing(topics: Topics, what: str, role: str, roles: Sequence[str]) -> InputError:
-    """What to say where none of `roles` has messages; a person may name a topic for `role`."""
-    name, option = topics.bag.name, f"--topic {role}=/your/topic"
+def missing(topics: Topics, what: str, signal: str, signals: Sequence[str]) -> InputError:
+    """What to say where none of `signals` has messages; a person may name a topic for `signal`."""
+    name, option = topics.bag.name, f"--topic {signal}=/your/topic"
     if topics.bag.count == 0:
         return InputError(f"{name} holds no messages, expected a measured signal and what drove it. Record again.")
-    empty = [topic for topic in (topics.topic(role) for role in roles) if topic is not None]
+    empty = [topic for topic in map(topics.topic_of, signals) if topic is not None]
     if empty:
         return InputError(f"{name} has no messages on {empty[0]}, expected a {what}. Name another with {option}.")
-    return InputError(f"{name} has no {what} topic (found: {topics.listed()}). Name it with {option}.")
+    return InputError(
+        f"{name} has no {what} topic (found: {topics.listed()}). Name it with {option}; pierburg inspect says what each"
+        " could be."
+    )

@@ -21,7 +21,8 @@ QUALITY = DataQuality(rate=500.0, jitter=0.0, gaps=0, saturated_share=0.0, stops
 NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.inf)
 CONTRACT = {
     "schema", "recordings", "quantity", "unit", "verdict", "summary", "effects", "parameters", "changes", "locations",
-    "regimes", "fit", "candidates", "not_testable", "residual_torque", "data_quality", "advice",
+    "regimes", "fit", "candidates", "not_testable", "cannot_act", "ruled_out", "remaining", "excluded",
+    "residual_torque", "data_quality", "advice",
 }  # fmt: skip
 
 
@@ -42,7 +43,7 @@ def test_has_the_fields_of_the_contract(tmp_path):
     document().write(tmp_path / "diagnosis.json")
     content = json.loads((tmp_path / "diagnosis.json").read_text())
     assert set(content) == CONTRACT
-    assert content["schema"] == 1 and content["residual_torque"] is None
+    assert content["schema"] == 2 and content["residual_torque"] is None
 
 
 def test_a_number_that_does_not_exist_is_null():

@@ -23,7 +23,7 @@ def strengths() -> list[tuple[Effect, str]]:
 def plausible(effect: Effect) -> dict[str, float]:
     """All parameters of an effect in the middle of their plausible ranges."""
     values = {
-        f"{effect.id}.{p.name}": p.choices[0] if p.choices else 0.5 * (p.plausible[0] + p.plausible[1])
+        f"{effect.id}.{p.name}": p.choices[0] if p.choices else 0.5 * sum(p.expected(NOMINAL.scales))
         for p in effect.parameters
     }
     if effect.id == "external_load":
@@ -52,7 +52,7 @@ def test_continuous_towards_absence(strength: tuple[Effect, str]) -> None:
     values = plausible(effect) | {f"{effect.id}.{other}": 0.0 for other in effect.strength}
 
     def distance(share: float) -> float:
-        strong = effect.parameter(name).plausible[1]
+        strong = effect.parameter(name).expected(NOMINAL.scales)[1]
         weak = strong / share if flat in STIFFNESSES else strong * share
         if flat in RESTING_ON_COULOMB:
             weak = RESTING_ON_COULOMB[flat] + share * (strong - RESTING_ON_COULOMB[flat])

@@ -6,7 +6,9 @@ import re
 
 import pytest
 
+from pierburg_ros.actuators import SHIPPED, Scales, read_actuator
 from pierburg_ros.effects import EFFECT, EFFECTS, Effect
+from pierburg_ros.intake.bounds import LARGEST
 
 CATALOGUE = {
     "viscous_friction": {"coefficient": "N.m.s/rad"},
@@ -65,8 +67,22 @@ def test_the_source_is_authors_title_and_year(effect: Effect) -> None:
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
-def test_plausible_ranges_lie_within_the_accepted_ones(effect: Effect) -> None:
+def test_plausible_ranges_lie_within_those_searched_and_accepted(effect: Effect) -> None:
+    for name in SHIPPED:
+        scales = Scales.of(read_actuator(name))
+        for parameter in effect.parameters:
+            low, high = parameter.expected(scales)
+            assert parameter.minimum <= low <= high <= parameter.maximum, parameter.name
+            assert set(parameter.choices) <= {low, high}, parameter.name
+            if parameter.searched is not None:
+                assert parameter.searched[0] <= parameter.plausible[0], parameter.name
+                assert parameter.plausible[1] <= parameter.searched[1], parameter.name
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.id)
+def test_what_is_accepted_excludes_only_the_impossible(effect: Effect) -> None:
+    """A number with a unit has no largest value: only signs, shares and angles that repeat themselves are bounded."""
     for parameter in effect.parameters:
-        low, high = parameter.plausible
-        assert parameter.minimum <= low <= high <= parameter.maximum, parameter.name
-        assert set(parameter.choices) <= {low, high}, parameter.name
+        if (parameter.measure or parameter.unit) != "1":
+            assert parameter.maximum == LARGEST, parameter.name
+            assert parameter.minimum in (0.0, -LARGEST), parameter.name

@@ -1,5 +1,7 @@
 """The way between values and the coordinates of a search."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.recordings import NOMINAL, PIERBURG, data_on, recording
@@ -8,6 +10,7 @@ from pierburg_ros.diagnosis.search.candidates import possible, starts_of
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.plant import Model
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 VARIANTS = [
@@ -78,3 +81,13 @@ def test_values_out_of_reach_are_brought_within_bounds() -> None:
     coordinates = Coordinates((FRICTION,), NOMINAL, 60.0)
     for value, nearest in ((1e-6, 0.2007 / 6.0), (100.0, 0.2007 * 6.0), (0.25, 0.25)):
         assert coordinates.within({FRICTION: value})[FRICTION] == pytest.approx(nearest)
+
+
+@pytest.mark.parametrize("coefficient", [0.003, 168.0])
+def test_what_an_actuator_always_has_is_searched_around_its_own_size(coefficient: float) -> None:
+    name = "viscous_friction.coefficient"
+    effects = {"viscous_friction": {"coefficient": coefficient}}
+    nominal = Model.nominal(replace(PIERBURG, effects=effects))
+    coordinates = Coordinates((name,), nominal, 60.0)
+    for value in (0.5 * coefficient, coefficient, 2.0 * coefficient):
+        assert coordinates.within({name: value})[name] == pytest.approx(value)

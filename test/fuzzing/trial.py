@@ -14,13 +14,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fuzzing import bag_input, mcap_input, table_input, yaml_input
+from fuzzing import bag_input, map_input, mcap_input, table_input, yaml_input
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant.model_file import read_model
 from pierburg_ros.recording import read_recording
+from pierburg_ros.recording.inspection import inspect
 
 LONGEST_LINE = 300
 """Characters of a message at most."""
@@ -53,11 +54,25 @@ def read_schedule(path: Path) -> Any:
     return read_duty_file(path) if duty else read_setpoint_file(path)
 
 
+def read_mapped(path: Path) -> Any:
+    """What is beside a signal map, by the map; and by the one that is drafted of it, where it can be looked into."""
+    recording = next(each for each in (path.with_name("run.csv"), path.with_name("run.mcap")) if each.exists())
+    drafted = path.with_name("drafted.yaml")
+    try:
+        drafted.write_text(inspect(recording).signals, encoding="utf-8")
+        read_recording(recording, signals=drafted)
+    except InputError as error:
+        assert judged(error)[0] == "line", error
+    return read_recording(recording, signals=path)
+
+
 KINDS = (
     Kind("run.mcap", single("run.mcap", mcap_input.mcap), read_recording),
     Kind("bag", bag_input.bag, read_recording),
     Kind("run.db3", single("run.db3", bag_input.database), read_recording),
     Kind("run.csv", single("run.csv", table_input.recorded), read_recording),
+    Kind("signals.yaml", map_input.mapped_table, read_mapped),
+    Kind("signals.yaml", map_input.mapped_bag, read_mapped),
     Kind("model.yaml", single("model.yaml", yaml_input.model), read_model),
     Kind("actuator.yaml", single("actuator.yaml", yaml_input.actuator), read_actuator),
     Kind("controller.yaml", single("controller.yaml", yaml_input.settings), read_parameter_file),

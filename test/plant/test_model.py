@@ -37,7 +37,7 @@ def test_changing_values_leaves_the_original_alone() -> None:
         ({"armature_resistance": math.nan}, "armature_resistance is nan; expected 0.1 to 50"),
         ({"armature_resistance": "4"}, "armature_resistance is '4'; expected a number"),
         ({"armature_resistance": True}, "armature_resistance is True; expected a number"),
-        ({"backlash.gap": 0.6}, "backlash.gap is 0.6; expected 0 to 0.5"),
+        ({"backlash.gap": -0.6}, "backlash.gap is -0.6; expected 0 to 1e+09"),
         ({"sensor_nonlinearity.half_waves": 1.5}, "half_waves is 1.5; expected 1 or 2"),
         ({"static_friction.breakaway_torque": 0.1}, "expected 0 (absent) or at least coulomb_friction, 0.2007"),
         ({"coulomb_friction": 0.3, "static_friction.breakaway_torque": 0.25}, "at least coulomb_friction, 0.3"),

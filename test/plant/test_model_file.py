@@ -61,7 +61,7 @@ def test_mapping_is_read_like_a_file() -> None:
         ("4.71", "lots", "model.yaml line 2: armature_resistance is 'lots'; expected a number"),
         ("static_friction:", "stiction:", "model.yaml line 4: unknown effect stiction"),
         ("stribeck_velocity", "velocity", "model.yaml line 4: static_friction has no parameter velocity"),
-        ("0.27", "99", "model.yaml line 4: static_friction.breakaway_torque is 99; expected 0 to 5"),
+        ("0.27", "-9", "model.yaml line 4: static_friction.breakaway_torque is -9; expected 0 to 1e+09"),
         ("0.27", "0.1", "at least coulomb_friction"),
         ("{breakaway_torque: 0.27, stribeck_velocity: 0.1}", "0.27", "model.yaml line 4: static_friction is 0.27"),
         ("residual_torque:", "residual:", "model.yaml line 5: unknown residual"),

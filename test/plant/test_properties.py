@@ -28,7 +28,7 @@ def valves(draw: st.DrawFn, most_effects: int = 3) -> Model:
     chosen = draw(st.lists(st.sampled_from(EFFECTS), max_size=most_effects, unique_by=lambda effect: effect.id))
     for effect in chosen:
         for p in effect.parameters:
-            drawn = draw(st.sampled_from(p.choices) if p.choices else st.floats(*p.plausible))
+            drawn = draw(st.sampled_from(p.choices) if p.choices else st.floats(*p.expected(NOMINAL.scales)))
             values[f"{effect.id}.{p.name}"] = drawn
     breakaway = "static_friction.breakaway_torque"
     if breakaway in values:

@@ -76,6 +76,17 @@ def test_a_label_outside_the_catalogue_keeps_its_values():
     assert concealed_values(label)[0] == dict(trial.effects)
 
 
+def test_a_remainder_is_there_with_an_effect_and_without():
+    beside, alone = draw("beside", 4, 3), draw("remainder", 1, 3)
+    assert len(truth(beside)["effects"]) == 1 and not truth(alone)["effects"]
+    for trial in (beside, alone):
+        assert trial.verdict == "unexplained"
+        assert trial.remainder["relaxation.stiffness"] == pytest.approx(0.05 * NOMINAL["spring_stiffness"])
+        assert trial.bare.values.items() >= trial.remainder.items()
+        effects, others = concealed_values(truth(trial))
+        assert {**NOMINAL, **others, **effects} == trial.values
+
+
 def test_a_change_starts_from_the_nominal_value():
     trial = draw("change", 0, 3)
     assert trial.change is not None and trial.verdict == "parameter_drift"

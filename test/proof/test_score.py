@@ -133,6 +133,24 @@ def test_outside_the_catalogue_asks_for_unexplained():
     assert not wrong.right and not wrong.false_alarm
 
 
+@pytest.mark.parametrize(
+    ("named", "shown", "right"),
+    [(["sensor_lag"], True, True), (["sensor_lag", "backlash"], True, False), ([], True, False), ([], False, True)],
+)
+def test_beside_a_remainder_the_names_decide(named, shown, right):
+    visibility = {**TRUTH["visibility"], "shown": shown}
+    truth = changed(
+        TRUTH,
+        kind="beside",
+        verdict="unexplained",
+        remainder={"relaxation.stiffness": 0.007},
+        effects=[{"id": "sensor_lag", "parameters": {"time_constant": {"value": 0.01, "unit": "s"}}}],
+        visibility=visibility,
+    )
+    answer = changed(ANSWER, verdict="unexplained", effects=[{"id": name, "parameters": {}} for name in named])
+    assert score(truth, answer, None, None).right is right
+
+
 @pytest.mark.parametrize(("found", "dated"), [(31.4, True), (35.0, False)])
 def test_a_change_is_dated_within_half_a_second(found, dated):
     change = {"parameter": "armature_resistance", "time": 31.2, "before": 4.1, "after": 5.0}

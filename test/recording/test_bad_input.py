@@ -43,13 +43,15 @@ def test_damaged_chunk(write_bag, run):
 
 def test_no_duty_topic(write_bag, run):
     assert refusal(write_bag(run(duty="/rosout"))) == (
-        "run.mcap has no duty topic (found: /hall_voltage, /rosout). Name it with --topic duty=/your/topic."
+        "run.mcap has no duty topic (found: /hall_voltage, /rosout). Name it with --topic duty=/your/topic;"
+        " pierburg inspect says what each could be."
     )
 
 
 def test_no_measured_topic(write_bag, run):
     assert refusal(write_bag(run(hall="/angle"))) == (
-        "run.mcap has no measured signal topic (found: /angle, /duty). Name it with --topic hall_voltage=/your/topic."
+        "run.mcap has no measured signal topic (found: /angle, /duty). Name it with --topic hall_voltage=/your/topic;"
+        " pierburg inspect says what each could be."
     )
 
 

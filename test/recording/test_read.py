@@ -79,6 +79,18 @@ def test_takes_the_shaft_among_several_joints(write_bag, run, message):
         read_recording(write_bag(duty + nameless))
 
 
+def test_the_shaft_is_found_in_every_order_of_joints(write_bag, run, message):
+    """Messages of one length, in which the same names stand in another order."""
+    duty = [item for item in run() if item.topic == "/duty"]
+    joints = []
+    for k, item in enumerate(duty):
+        values = {"arm": 5.0, "swirl_shaft": 0.01 * k}
+        joints.append(message("/joint_states", "joint", item.log, item.log, k, (item.log, values)))
+        if k % 2:
+            joints[-1] = joints[-1]._replace(value=(item.log, dict(reversed(values.items()))))
+    np.testing.assert_allclose(read_recording(write_bag(duty + joints)).measured, 0.01 * np.arange(50))
+
+
 def test_reads_big_endian_messages(write_bag, run, tmp_path):
     store = get_typestore(Stores.ROS2_JAZZY)
     swapped = store.serialize_cdr(store.types["std_msgs/msg/Float64"](2.5), "std_msgs/msg/Float64", little_endian=False)

@@ -13,11 +13,15 @@ from pierburg_ros.diagnosis.schema import (
     Effect,
     Errors,
     Estimate,
+    Excluded,
     FitQuality,
+    Horizon,
     Location,
     NotTestable,
     Regime,
+    Remaining,
     ResidualTorque,
+    RuledOut,
     TorqueOverTime,
 )
 from pierburg_ros.plant import Model
@@ -27,6 +31,7 @@ TIME = 0.002 * np.arange(30000)
 
 def diagnosis(**changes) -> Diagnosis:
     errors = Errors(nominal_rmse=0.2, recalibrated_rmse=0.07, final_rmse=0.0042)
+    horizons = [Horizon(after=after, **errors.model_dump()) for after in (0.1, 3.0, None)]
     breakaway = Estimate(value=0.27, unit="N.m", ci95=(0.26, 0.28), identifiable=True)
     preload = BaseParameter(nominal=0.29, value=0.33, unit="N.m", ci95=None, identifiable=True, drifted=True)
     fields = {
@@ -48,9 +53,15 @@ def diagnosis(**changes) -> Diagnosis:
         "changes": [Change(parameter="supply_voltage", time=31.2, before=13.5, after=12.9)],
         "locations": [Location(start=12.1, end=12.6, share=0.08, regime="leaving the closed stop")],
         "regimes": [Regime(variable="angle", range=(0.0, 0.5), unit="rad", share_of_residual=0.74, share_of_time=0.09)],
-        "fit": FitQuality(noise_floor=0.004, training=errors, validation=errors),
+        "fit": FitQuality(noise_floor=0.004, training=errors, validation=errors, horizons=horizons),
         "candidates": [Candidate(id="backlash", validation_rmse=0.06, evidence=12.0, status="rejected")] * 20,
         "not_testable": [NotTestable(id="backlash", why="the flanks never part", record="duty below 0")],
+        "ruled_out": [
+            RuledOut(id="backlash", parameter="gap", below=0.005, unit="rad"),
+            RuledOut(id="stop_compliance", parameter="stiffness", above=900.0, unit="N.m/rad"),
+        ],
+        "remaining": Remaining(share=0.07, looks_like="a slow swing"),
+        "excluded": [Excluded(start=30.0, end=32.0, why="messages are missing")],
         "data_quality": DataQuality(
             rate=500.0,
             jitter=0.0,

@@ -13,67 +13,111 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-from pierburg_ros.plant.decode import decoded
+from pierburg_ros.plant.decode import decoded, turned
+from pierburg_ros.plant.simulate import motor_torque
+from pierburg_ros.plant.torques.missing import missing
 
-SPOT = 0.05
-"""Width of the bins [rad] in which tight spots are looked for. Derived: the narrowest that a blind trial conceals;
-only starts of a search come from it."""
-MOVING = 0.1
-"""Velocity [rad/s] from which friction has a known sign. Derived: twice the velocity that counts as standing still."""
+SPOT = 0.032
+"""Width of the bins in which tight spots are looked for, as a share of the travel. Derived: the narrowest that a blind
+trial conceals; only starts of a search come from it."""
+MOVING = 0.006
+"""Share of the no-load speed from which friction has a known sign. Derived: twice what counts as standing still."""
+SPAN = 2.6
+"""Shortest span of time in which a load is looked for, in the actuator's own; longer in a recording of more than 120 of
+them. Chosen: a quarter of a second for the valve; only starts of a search come from it."""
 
 
 @dataclass(frozen=True)
 class MissingTorque:
-    """The load torque [N.m] that a model lacks where the shaft moves, with time [s], angle, velocity; (moving,)."""
+    """The load torque that a model lacks where the shaft moves, with time, angle and velocity, shape (moving,).
+
+    All in multiples of the actuator's own scales, as starts of a search are.
+    """
 
     time: Signal
     angle: Signal
     velocity: Signal
     torque: Signal
     gear_ratio: float
+    """Radians that the motor turns while the shaft turns by 1 here."""
     end: float
-    """Last moment of the recording [s]."""
+    """Last moment of the recording."""
 
     def turns(self, between: tuple[float, float], most: int) -> list[float]:
         """The strongest rhythms over the angle [periods per motor revolution], strongest first."""
         return rhythms(self.angle * self.gear_ratio / (2 * math.pi), self.torque, between, most)
 
     def pulses(self, between: tuple[float, float], most: int) -> list[float]:
-        """The strongest rhythms in time [Hz], strongest first."""
+        """The strongest rhythms in time, strongest first."""
         return rhythms(self.time, self.torque, between, most)
 
     def spans(self, most: int) -> list[tuple[float, float, float]]:
-        """Spans of time in which the torque stands out: start [s], end [s] or 0 for never, torque [N.m]."""
+        """Spans of time in which the torque stands out: start, end or 0 for never, torque."""
         return spans(self.time, self.torque, self.end, most)
 
     def tight_spots(self, most: int) -> list[float]:
-        """Angles [rad] at which more friction is missing than elsewhere, the clearest first."""
+        """Angles at which more friction is missing than elsewhere, the clearest first."""
         return tight_spots(self, most)
 
 
 def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
-    """What the load torque of `model` lacks.
+    """What the load torque of `model` lacks."""
+    return _of_motion(data, run, model) if run.shooting is not None else _of_error(data, run, model)
+
+
+def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
+    """From the measured motion alone, inertia included, where a simulation does not keep to it."""
+    own = data.scales
+    instant = INSTANT * own.time
+    grid = np.arange(run.time[0], run.time[-1], instant)
+    shown = _averaged(run.time, turned(model, run.time, run.measured, run.quantity), grid)
+    velocity = np.gradient(shown, instant)
+    acceleration = np.gradient(velocity, instant)
+    motor = _averaged(run.time, motor_torque(model, run.inputs, run.time), grid)
+    torque = missing(model.record()[0], motor, grid, shown, velocity, acceleration)
+    moving = np.abs(velocity) > MOVING * own.angle / own.time
+    return MissingTorque(
+        time=grid[moving] / own.time,
+        angle=shown[moving] / own.angle,
+        velocity=velocity[moving] * own.time / own.angle,
+        torque=torque[moving] / own.torque,
+        gear_ratio=model.values.get("gear_ratio", 1.0) * own.angle,
+        end=float(run.time[-1]) / own.time,
+    )
+
+
+def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
+    """From the error of a simulation.
 
     While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque). This is
     equation (6) of the paper without the inertia, which is out of reach (time constant 15 us).
     """
     value = model.values
-    scale = data.angle_per_unit
-    grid = np.arange(run.time[0], run.time[-1], INSTANT)
+    own = data.scales
+    per_unit, instant = data.angle_per_unit / own.angle, INSTANT * own.time
+    grid = np.arange(run.time[0], run.time[-1], instant)
     simulated, measured = (_averaged(run.time, values, grid) for values in (run.simulated(model), run.measured))
-    damping = braking(model)
-    stiffness = value.get("spring_stiffness", 0.0)
-    error = scale * (measured - simulated)
+    damping = braking(model) / own.of_unit("N.m.s/rad")
+    stiffness = value.get("spring_stiffness", 0.0) / own.of_unit("N.m/rad")
+    error = per_unit * (measured - simulated)
     torque = -(damping * np.gradient(error, INSTANT) + stiffness * error)
-    speeds = scale * np.gradient(measured, INSTANT), scale * np.gradient(simulated, INSTANT)
+    speeds = per_unit * np.gradient(measured, INSTANT), per_unit * np.gradient(simulated, INSTANT)
     moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
-    time, angle, velocity = grid[moving], decoded(model, measured[moving], run.quantity), speeds[0][moving]
-    return MissingTorque(time, angle, velocity, torque[moving], value["gear_ratio"], float(run.time[-1]))
+    angle = decoded(model, measured[moving], run.quantity) / own.angle
+    return MissingTorque(
+        time=grid[moving] / own.time,
+        angle=angle,
+        velocity=speeds[0][moving],
+        torque=torque[moving],
+        gear_ratio=value["gear_ratio"] * own.angle,
+        end=float(run.time[-1]) / own.time,
+    )
 
 
 def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:
     """Means of `values` over one grid step around each grid point."""
-    edges = np.searchsorted(time, np.append(grid - INSTANT / 2, grid[-1] + INSTANT / 2))
+    half = 0.5 * float(grid[1] - grid[0]) if grid.size > 1 else 0.0
+    edges = np.searchsorted(time, np.append(grid - half, grid[-1] + half))
     total = np.concatenate([[0.0], np.cumsum(values)])
     count = np.maximum(np.diff(edges), 1)
     means = (total[edges[1:]] - total[edges[:-1]]) / count
@@ -103,8 +147,8 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
 
 
 def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[float, float, float]]:
-    """Stretches (start [s], end [s] or 0 for never, torque [N.m]) in which the mean of `torque` stands out."""
-    width = max(end / 120.0, 0.25)
+    """Stretches (start, end or 0 for never, torque) in which the mean of `torque` stands out."""
+    width = max(end / 120.0, SPAN)
     bins = np.floor(time / width).astype(int)
     count = np.bincount(bins, minlength=int(end / width) + 1).astype(float)
     limit = 6.0 * np.median(np.abs(torque - np.median(torque))) if torque.size else 0.0
@@ -131,7 +175,7 @@ def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[flo
 
 
 def tight_spots(missing: MissingTorque, most: int) -> list[float]:
-    """Angles [rad] at which more friction is missing than elsewhere, the clearest first, at most `most`."""
+    """Angles at which more friction is missing than elsewhere, the clearest first, at most `most`."""
     if missing.angle.size < 20:
         return []
     against = missing.torque * np.sign(missing.velocity)

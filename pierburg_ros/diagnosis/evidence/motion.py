@@ -7,24 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
 
-INSTANT = 0.02
-"""Shortest time [s] over which a motion is told: half the window of a velocity, and the grid of missing torque, of
-energy and of contact. Derived: ten samples at 500 Hz; with 3 mV of noise a velocity is then known to 0.025 rad/s."""
-SLOWEST = 0.05
-"""Velocity [rad/s] below which the shaft counts as standing still, unless noise asks for more. Derived: twice the
-error that 3 mV of noise leave in a velocity. It is not scaled with the actuator."""
-NEAR = 0.015
-"""Distance from a stop [rad] within which the shaft counts as on it, besides three times the noise. Chosen: 1 % of the
-valve's travel; not varied, not scaled with the actuator."""
-AFTERMATH = 0.3
-"""How long after a standstill [s] the movement counts as the first one. Chosen: it names windows and regimes and
-decides no verdict."""
+INSTANT = 0.21
+"""Shortest time over which a motion is told, in the actuator's own: half the window of a velocity, and the grid of
+missing torque, of energy and of contact. Derived: 20 ms for the valve, ten samples at 500 Hz; with 3 mV of noise a
+velocity is then known to 0.025 rad/s."""
+SLOWEST = 0.003
+"""Share of the no-load speed below which the shaft counts as standing still, unless noise asks for more. Derived: twice
+the error that 3 mV of noise leave in a velocity of the valve."""
+NEAR = 0.01
+"""Distance from a stop within which the shaft counts as on it, besides three times the noise, as a share of the travel.
+Chosen: a hundredth; not varied."""
+AFTERMATH = 3.1
+"""How long after a standstill the movement counts as the first one, in the actuator's own time. Chosen: 0.3 s for the
+valve; it names windows and regimes and decides no verdict."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,11 @@ class Motion:
     actuator: Actuator
     angle_per_unit: float
     """Angle of one unit of the measured quantity."""
+
+    @property
+    def scales(self) -> Scales:
+        """What is large for the actuator."""
+        return Scales.of(self.actuator)
 
     @property
     def direction(self) -> Signal:
@@ -62,7 +68,7 @@ class Motion:
 
     @property
     def time_at_rest(self) -> Signal:
-        """How long the shaft has stood still [s], or had before a movement begun less than 0.3 s ago; else 0."""
+        """How long the shaft has stood still [s], or had before a movement begun a moment ago; else 0."""
         began = np.zeros(self.time.size)
         arrivals = np.flatnonzero(~self.moving[1:] & self.moving[:-1]) + 1
         began[arrivals] = self.time[arrivals]
@@ -73,7 +79,7 @@ class Motion:
         if departures.size == 0:
             return np.asarray(resting)
         latest = departures[np.maximum(place, 0)]
-        fresh = self.moving & (place >= 0) & (self.time - self.time[latest] < AFTERMATH)
+        fresh = self.moving & (place >= 0) & (self.time - self.time[latest] < AFTERMATH * self.scales.time)
         return np.asarray(np.where(fresh, resting[latest - 1], resting))
 
     @property
@@ -93,15 +99,15 @@ class Motion:
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
-    nominal = Model.nominal(actuator)
+    nominal, scales = Model.nominal(actuator), Scales.of(actuator)
     angle, per_unit = decoded(nominal, run.measured, run.quantity), angle_per_unit(nominal)
     interval = float(np.median(np.diff(run.time)))
-    half = max(INSTANT, 2.0 * interval)
+    half = max(INSTANT * scales.time, 2.0 * interval)
     spread = noise * abs(per_unit)
     # each end of the difference is a mean over the half window
-    slowest = max(SLOWEST, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
+    slowest = max(SLOWEST * scales.angle / scales.time, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
     velocity = slope(run.time, angle, half)
-    near = NEAR + 3.0 * spread
+    near = NEAR * scales.angle + 3.0 * spread
     place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
     duty = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])
     return Motion(

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
@@ -31,14 +31,20 @@ Kind = Literal[
     "little_travel",
 ]
 
-SHORTEST = 2.0
-"""Duration [s] without which nothing can be fitted and judged. Chosen: less than two time constants of the valve, 1.15
-s each; not varied."""
-SHORT = 10.0
-"""Duration [s] below which rare events and slow changes stay unseen. Chosen: it adds advice and decides no verdict."""
-SLOW_SAMPLING = 100.0
-"""Rate [Hz] below which a few milliseconds of delay or lag cannot be told from other errors. Derived: one sample
-period is then 10 ms, the delay itself. It adds advice; over 2 s it also sets the least number of samples."""
+SHORTEST = 21.0
+"""Duration without which nothing can be fitted and judged, in the actuator's own time. Chosen: 2 s for the valve, less
+than two of its time constants, 1.15 s each; not varied."""
+FEWEST = 200
+"""Samples without which nothing can be fitted and judged. Chosen: ten for each parameter and value of an effect; not
+varied."""
+SHORT = 105.0
+"""Duration below which rare events and slow changes stay unseen, in the actuator's own time. Chosen: 10 s for the
+valve; it adds advice and decides no verdict."""
+SLOW_SAMPLING = 9.5
+"""Samples in the actuator's own time below which delays and lags that matter cannot be told from other errors. Derived:
+one sample period of the valve is then 10 ms, the delay itself. It adds advice and decides no verdict."""
+WANTED = 5.0
+"""Sampling to ask for, in multiples of the slowest that will do. Given: it is 500 Hz for the valve."""
 SATURATED = 0.9
 """Share of time at full duty from which a recording counts as saturated throughout. Chosen: a tenth of the time is
 left to tell friction and spring; not varied."""
@@ -46,9 +52,9 @@ GAP = 3.0
 """An interval of so many median ones is a gap. Given: so `gaps` is defined in diagnosis.json."""
 MOST_GAPS = 0.02
 """Share of time in gaps that counts as many. Chosen: it adds advice and decides no verdict."""
-SHORT_TRAVEL = 0.35
-"""Travel [rad] below which what depends on the angle stays unseen: 20 degrees. Chosen: it adds advice and decides no
-verdict."""
+SHORT_TRAVEL = 0.22
+"""Share of the travel below which what depends on the angle stays unseen. Chosen: 20 degrees for the valve; it adds
+advice and decides no verdict."""
 
 RECORD: dict[Kind, str] = {
     "no_movement": "Record again with duty steps large enough to move the shaft both ways.",
@@ -56,7 +62,7 @@ RECORD: dict[Kind, str] = {
     "saturated": "Record again with duty steps well within the limits, up and down.",
     "begins_moving": "Start recording before the shaft moves.",
     "short": "Record a minute, with movements in both directions.",
-    "slow_sampling": "Record at 500 Hz.",
+    "slow_sampling": "Record with a shorter sample period.",
     "gaps": "Record on an idle machine, or with the recorder's queue made longer.",
     "one_direction": "Record opening and closing over the same angles.",
     "little_travel": "Record movements over the whole travel.",
@@ -81,14 +87,14 @@ class Limit:
         return RECORD[self.kind]
 
 
-def refuse_unusable(recordings: Sequence[Recording]) -> None:
+def refuse_unusable(recordings: Sequence[Recording], scales: Scales) -> None:
     """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
-    fewest = round(SHORTEST * SLOW_SAMPLING)
+    shortest = SHORTEST * scales.time
     for recording in recordings:
-        if recording.time.size < fewest or recording.duration < SHORTEST:
+        if recording.time.size < FEWEST or recording.duration < shortest:
             raise InputError(
-                f"{recording.name} is too short ({recording.time.size} samples over {recording.duration:.2f} s);"
-                f" expected at least {fewest} samples over {SHORTEST:g} s. Record longer: a minute with"
+                f"{recording.name} is too short ({recording.time.size} samples over {recording.duration:#.3g} s);"
+                f" expected at least {FEWEST} samples over {shortest:.2g} s. Record longer: a minute with"
                 " movements in both directions tells most."
             )
 
@@ -118,7 +124,7 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     return [
         *_limits_of_movement(motions, runs, noise),
         *_limits_of_start(runs, actuator),
-        *_limits_of_sampling(runs),
+        *_limits_of_sampling(runs, Scales.of(actuator)),
         *_limits_of_reach(motions),
     ]
 
@@ -165,7 +171,7 @@ def _limits_of_start(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
         limits.append(
             Limit(
                 "begins_moving",
-                f"The shaft moves when recording begins: the first {max(late):.2f} s, up to its first standstill, are"
+                f"The shaft moves when recording begins: the first {max(late):.3g} s, up to its first standstill, are"
                 " left out, for how fast it moved there cannot be told well enough.",
             )
         )
@@ -181,30 +187,30 @@ def _limits_of_start(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
     return limits
 
 
-def _limits_of_sampling(runs: Sequence[Run]) -> list[Limit]:
+def _limits_of_sampling(runs: Sequence[Run], scales: Scales) -> list[Limit]:
     limits = []
     duration = sum(float(run.time[-1] - run.time[0]) for run in runs)
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
-    if duration < SHORT:
+    if duration < SHORT * scales.time:
         limits.append(
             Limit(
                 "short",
-                f"Only {duration:.1f} s are recorded: rare events and anything that grows with time stay unseen,"
+                f"Only {duration:.3g} s are recorded: rare events and anything that grows with time stay unseen,"
                 " and little is left to judge a fit on.",
             )
         )
-    if 1.0 / median < SLOW_SAMPLING:
+    if scales.time / median < SLOW_SAMPLING:
         limits.append(
             Limit(
                 "slow_sampling",
-                f"The signal is sampled at {1.0 / median:.0f} Hz: delays and lags of a few milliseconds cannot be"
-                " told apart.",
+                f"The signal is sampled at {1.0 / median:.3g} Hz: short delays and lags cannot be told apart (they"
+                f" could at {WANTED * SLOW_SAMPLING / scales.time:.2g} Hz).",
             )
         )
     lost = float(np.sum(intervals[intervals > GAP * median]))
     if lost > MOST_GAPS * duration:
-        limits.append(Limit("gaps", f"Samples are missing for {lost:.2f} s: events in these gaps stay unseen."))
+        limits.append(Limit("gaps", f"Samples are missing for {lost:.3g} s: events in these gaps stay unseen."))
     return limits
 
 
@@ -218,7 +224,7 @@ def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
         way = "opens" if directions == {1.0} else "closes"
         limits.append(Limit("one_direction", f"The shaft only {way}: friction cannot be told from spring and load."))
     travel = _span(motions)
-    if travel[1] - travel[0] < SHORT_TRAVEL:
+    if travel[1] - travel[0] < SHORT_TRAVEL * motions[0].scales.angle:
         reach = math.degrees(travel[1] - travel[0])
         limits.append(
             Limit("little_travel", f"The shaft travels {reach:.1f} degrees: what depends on the angle stays unseen.")
@@ -248,7 +254,7 @@ def excited(motions: Sequence[Motion]) -> str:
         direction,
         _counted(sum(motion.reversals.size for motion in motions), "reversal"),
         _counted(sum(motion.departures.size for motion in motions), "start") + " from standstill",
-        f"up to {fastest:.1f} rad/s",
+        f"up to {fastest:.3g} rad/s",
         f"duty {np.min(duty):.2f} to {np.max(duty):.2f}",
     ]
     if math.isfinite(motions[0].actuator.lower_stop):
@@ -268,7 +274,7 @@ def _span(motions: Sequence[Motion]) -> tuple[float, float]:
 
 def _touched(motions: Sequence[Motion], end: str) -> bool:
     held = [(m.time, m.closed if end == "closed" else m.open) for m in motions]
-    return any(float(np.sum(np.diff(time)[on[1:] & on[:-1]])) >= INSTANT for time, on in held)
+    return any(float(np.sum(np.diff(time)[on[1:] & on[:-1]])) >= INSTANT * motions[0].scales.time for time, on in held)
 
 
 def _resolution(runs: Sequence[Run]) -> float:

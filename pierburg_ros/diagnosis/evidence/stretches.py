@@ -35,6 +35,9 @@ def restarted(data: Data, length: float) -> Data:
 
 
 def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
+    """The parts of a run; one that begins again and again anyway stays whole."""
+    if run.shooting is not None:
+        return [run]
     number = np.floor((run.time - run.time[0]) / length + 1e-9).astype(int)
     cuts = np.flatnonzero(np.diff(number, prepend=-1))
     stretches = []

@@ -12,8 +12,14 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
 
-LONG = 1.0
-"""Length [s] from which a window is described by its beginning and its reach. Chosen: it decides a word."""
+LONG = 10.5
+"""Length from which a window is described by its beginning and its reach, in the actuator's own time. Chosen: 1 s for
+the valve; it decides a word."""
+RECENT = 5.25
+"""How long before a movement a pull counts as just before it, in the actuator's own time. Chosen: half a second for the
+valve; it decides a word."""
+PLACE = 0.09
+"""Share of the travel within which the shaft is near one angle. Chosen: 8 degrees for the valve; it decides a word."""
 PRESSING = 0.01
 """Duty from which the motor is said to press against a stop. Chosen: it decides a word."""
 
@@ -36,8 +42,8 @@ def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, f
 
 def doing(motion: Motion, start: float, end: float) -> str:
     """What the shaft does from `start` to `end` [s], in words: of a long window how it begins and how far it goes."""
-    if end - start > LONG:
-        beginning = doing(motion, start, start + LONG / 2)
+    if end - start > LONG * motion.scales.time:
+        beginning = doing(motion, start, start + 0.5 * LONG * motion.scales.time)
         return f"{beginning}, then {_reach(motion, _samples(motion, start, end))}"
     inside = _samples(motion, start, end)
     if inside.size == 0:
@@ -95,8 +101,8 @@ def _travelling(motion: Motion, inside: NDArray[np.intp]) -> str:
 
 
 def _pulled_before(motion: Motion, first: int) -> bool:
-    """Whether the duty was negative at rest within half a second before sample `first`."""
-    recent = (motion.time >= motion.time[first] - 0.5) & (motion.time < motion.time[first])
+    """Whether the duty was negative at rest just before sample `first`."""
+    recent = (motion.time >= motion.time[first] - RECENT * motion.scales.time) & (motion.time < motion.time[first])
     return bool(np.any(recent & ~motion.moving & (motion.duty < -PRESSING)))
 
 
@@ -106,7 +112,7 @@ def _way(motion: Motion, sample: int) -> str:
 
 def _near(motion: Motion, inside: NDArray[np.intp]) -> str:
     lowest, highest = (math.degrees(f(motion.angle[inside])) for f in (np.min, np.max))
-    if highest - lowest < 8.0:
+    if highest - lowest < math.degrees(PLACE * motion.scales.angle):
         return f"near {round((lowest + highest) / 2)} degrees"
     return f"between {round(lowest)} and {round(highest)} degrees"
 

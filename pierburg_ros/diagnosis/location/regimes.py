@@ -15,9 +15,9 @@ from pierburg_ros.diagnosis.schema import Regime
 BINS = 24
 """Ranges of about equal time into which a variable is cut. Chosen: 4 % of the time each, finer than the `CONTRAST`
 asks for; not varied."""
-BLOCK = 0.5
-"""Shortest stretch [s] that stays together when the residual is shuffled; see `block_length`. Chosen: a movement of
-the valve stays whole; not varied."""
+BLOCK = 5.25
+"""Shortest stretch that stays together when the residual is shuffled, in the actuator's own time; see `block_length`.
+Chosen: half a second for the valve, of which a movement stays whole; not varied."""
 SHUFFLES = 250
 """Random orders that a range is held against. Derived: the least chance they can show is 1 in 251, well under
 `CHANCE`."""
@@ -52,14 +52,15 @@ def regimes(motion: Motion, residual: Signal, seed: int = 0) -> list[Regime]:
     share of time. Its `chance` is how often the energy, cut into blocks that are put in random order, gathers as
     much anywhere along the same variable.
     """
-    place = (motion.time / INSTANT).astype(int)
+    own = motion.scales.time
+    place = (motion.time / (INSTANT * own)).astype(int)
     cells, first, count = np.unique(place, return_index=True, return_counts=True)
     energy = np.add.reduceat(residual**2, first)
     if not np.any(energy > 0.0):
         return []
-    time = cells * INSTANT
+    time = cells * INSTANT * own
     random = np.random.default_rng(seed)
-    length = block_length(time, energy / count)
+    length = block_length(time, energy / count, own)
     orders = [_shuffled(time, length, random) for _ in range(SHUFFLES)]
     found = []
     for name, values in variables(motion).items():
@@ -83,18 +84,19 @@ def variables(motion: Motion) -> dict[str, Signal]:
     return values if distance is None else {**values, "stop_distance": distance}
 
 
-def block_length(time: Signal, energy: Signal) -> float:
-    """Length [s] of blocks that keep what belongs together: twice the correlation time of `energy`, at least 0.5 s.
+def block_length(time: Signal, energy: Signal, own: float) -> float:
+    """Length [s] of blocks that keep what belongs together: twice the correlation time of `energy`, at least `BLOCK`.
 
-    No more than a twentieth of the recording, or too few orders would be left.
+    `own` is the actuator's own time [s]. No more than a twentieth of the recording, or too few orders would be left.
     """
-    grid = np.arange(time[0], time[-1], 0.05)
+    step = 0.1 * BLOCK * own
+    grid = np.arange(time[0], time[-1], step)
     series = np.interp(grid, time, energy) - float(np.mean(energy))
     spectrum = np.abs(np.fft.rfft(series, 2 * series.size)) ** 2
     correlation = np.fft.irfft(spectrum)[: series.size]
     below = np.flatnonzero(correlation < correlation[0] / np.e)
-    correlated = 0.05 * float(below[0]) if below.size else float(time[-1])
-    return float(np.clip(2.0 * correlated, min(BLOCK, time[-1] / 20.0), time[-1] / 20.0))
+    correlated = step * float(below[0]) if below.size else float(time[-1])
+    return float(np.clip(2.0 * correlated, min(BLOCK * own, time[-1] / 20.0), time[-1] / 20.0))
 
 
 def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArray[np.intp]:

@@ -9,12 +9,12 @@ import numpy as np
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
 
-BIN = 0.1
-"""Finest step of a window's ends [s]; coarser where a recording would have more than `MOST_BINS`. Derived: half the
-shortest window that a diagnosis may name."""
+SHORTEST = 2.6
+"""Shortest window that a diagnosis names, in the actuator's own time. Derived: more than the 0.2 s of the contract for
+every shipped actuator."""
 MOST_BINS = 600
-"""Steps into which a recording is cut at most. Work: a minute in steps of 0.1 s; time and memory grow with its square.
-"""
+"""Steps into which a recording is cut at most; they are half the shortest window, or longer. Work: time and memory grow
+with its square."""
 ENOUGH = 0.9
 """Share of an energy that shorter windows, or fewer, must keep of what longer or more ones hold. Chosen: a tenth is
 not worth a longer window; not varied."""
@@ -26,11 +26,11 @@ def windows(
     """Windows (start, end) [s] that hold the most of `energy`, the one with the most of it first.
 
     At most `most` windows, each at least `shortest` [s], together at most the share `quarter` of the recording;
-    exact for window ends on a grid of 0.1 s. In total they are as long as it takes to hold 90 % of what the longest
-    would. They are shorter where more windows of that length would hold much more.
+    exact for window ends on a grid of half the shortest. In total they are as long as it takes to hold 90 % of what the
+    longest would. They are shorter where more windows of that length would hold much more.
     """
     duration = float(time[-1] - time[0])
-    count = min(MOST_BINS, int(duration / BIN))
+    count = min(MOST_BINS, int(2.0 * duration / shortest))
     if count == 0 or not np.any(energy > 0.0):
         return []
     width = duration / count

@@ -21,9 +21,9 @@ def recalibrations(nominal: Model, explanation: Explanation) -> list[Way]:
         return Estimator(data, nominal).fit(explanation).model
 
     def stretches(data: Data) -> Model:
-        return Estimator(restarted(data, STRETCH), nominal).fit(explanation).model
+        return Estimator(restarted(data, STRETCH * data.scales.time), nominal).fit(explanation).model
 
     def forgiving(data: Data) -> Model:
-        return Estimator(restarted(data, STRETCH), nominal).fit(explanation, forgiving=True).model
+        return Estimator(restarted(data, STRETCH * data.scales.time), nominal).fit(explanation, forgiving=True).model
 
     return [described, whole, stretches, forgiving]

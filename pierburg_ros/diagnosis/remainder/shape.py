@@ -20,18 +20,21 @@ from pierburg_ros.plant import Model
 
 ANGLES = 7
 """Nodes over the angle. Chosen: one for every 15 degrees of the valve; not varied."""
-SPREAD = 0.05
-"""Prior standard deviation of a node [N.m]: keeps unvisited nodes small. Chosen: a quarter of the sliding friction of
-the valve; not varied, not scaled with the actuator."""
-STEEPNESS = 0.02
-"""Prior standard deviation of the difference of neighbouring nodes [N.m]: keeps the shape smooth. Chosen: a tenth of
-the sliding friction of the valve; not varied, not scaled with the actuator."""
+SPREAD = 0.019
+"""Prior standard deviation of a node, as a share of the stall torque: keeps unvisited nodes small. Chosen: a quarter of
+the sliding friction of the valve; not varied."""
+STEEPNESS = 0.0075
+"""Prior standard deviation of the difference of neighbouring nodes, as a share of the stall torque: keeps the shape
+smooth. Chosen: a tenth of the sliding friction of the valve; not varied."""
+APART = 0.02
+"""Least distance of neighbouring nodes of the angle, as a share of the travel. Chosen: an eighth of their distance
+where the travel is visited evenly; not varied."""
 WEIGHT = 5.0
 """How much more the prior weighs because residuals repeat themselves. Derived: the root of 25 samples that count as
 one."""
-STRETCH = 1.0
-"""Length of the stretches that are simulated each from the measured state [s]. Chosen: a slip at the wrong moment is
-forgotten after one; not varied."""
+STRETCH = 10.5
+"""Length of the stretches that are simulated each from the measured state, in the actuator's own time. Chosen: 1 s for
+the valve, after which a slip at the wrong moment is forgotten; not varied."""
 STRETCHES = 24
 """Into how many stretches of time the missing torque is averaged. Chosen: it makes a plot and decides no verdict."""
 
@@ -88,7 +91,8 @@ def _left_out(data: Data, way: Way) -> float:
     stretches, which do not see what a model forgets slowly.
     """
     inner = held_back(data)
-    stretches, trained = restarted(data, STRETCH), restarted(inner, STRETCH).train
+    length = STRETCH * data.scales.time
+    stretches, trained = restarted(data, length), restarted(inner, length).train
     base = way(inner)
 
     def error(model: Model) -> float:
@@ -102,17 +106,18 @@ def _left_out(data: Data, way: Way) -> float:
 def _fitted(data: Data, base: Model) -> Model:
     """`base` with its best shape.
 
-    It is bilinear between about 7 x 6 nodes. The signal is simulated in stretches of 1 s, each from the measured state:
-    a slip at the wrong moment is forgotten after a second. Large errors count by their logarithm. A prior keeps the
-    shape small and smooth.
+    It is bilinear between about 7 x 6 nodes. The signal is simulated in short stretches, each from the measured state:
+    a slip at the wrong moment is forgotten after one. Large errors count by their logarithm. A prior keeps the shape
+    small and smooth.
     """
-    stretches = restarted(data, STRETCH) if forgotten(base.active_effects) else data
+    own = data.scales.torque
+    stretches = restarted(data, STRETCH * data.scales.time) if forgotten(base.active_effects) else data
     training = stretches.train
     angle, velocity = nodes(data)
     prior = WEIGHT * _prior(angle.size, velocity.size)
 
     def shaped(point: Signal) -> Model:
-        torque = point.reshape(angle.size, velocity.size)
+        torque = own * point.reshape(angle.size, velocity.size)
         return base.with_residual({"angle": angle, "velocity": velocity, "torque": torque})
 
     def error(candidate: Model) -> Signal:
@@ -138,11 +143,13 @@ def nodes(data: Data) -> tuple[Signal, Signal]:
     motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
     angles = np.concatenate([motion.angle[motion.moving] for motion in motions])
     speeds = np.concatenate([motion.velocity[motion.moving] for motion in motions])
-    angle = _apart(np.quantile(angles, np.linspace(0.01, 0.99, ANGLES)), 0.03)
+    own = data.scales
+    slow = MOVING * own.angle / own.time
+    angle = _apart(np.quantile(angles, np.linspace(0.01, 0.99, ANGLES)), APART * own.angle)
     sides = []
-    for side in (speeds[speeds > MOVING], -speeds[speeds < -MOVING]):
+    for side in (speeds[speeds > slow], -speeds[speeds < -slow]):
         outer = np.quantile(side, (0.5, 0.95)) if side.size else np.empty(0)
-        sides.append(_apart(np.concatenate([[MOVING], outer]), 0.05))
+        sides.append(_apart(np.concatenate([[slow], outer]), 0.5 * slow))
     return angle, np.concatenate([-sides[1][::-1], sides[0]])
 
 
@@ -175,11 +182,11 @@ def _prior(angles: int, velocities: int) -> Signal:
 def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
     """Middle of each stretch of the first run [s] and the mean torque missing there [N.m], nan where at rest."""
     run = data.runs[0]
-    missing = missing_torque(data, run, model)
+    missing, own = missing_torque(data, run, model), data.scales
     edges = np.linspace(run.time[0], run.time[-1], STRETCHES + 1)
-    place = np.clip(np.searchsorted(edges, missing.time, side="right") - 1, 0, STRETCHES - 1)
+    place = np.clip(np.searchsorted(edges, own.time * missing.time, side="right") - 1, 0, STRETCHES - 1)
     count = np.bincount(place, minlength=STRETCHES)
-    total = np.bincount(place, weights=missing.torque, minlength=STRETCHES)
+    total = np.bincount(place, weights=own.torque * missing.torque, minlength=STRETCHES)
     mean = np.divide(total, count, out=np.full(STRETCHES, math.nan), where=count >= 5)
     return (edges[:-1] + edges[1:]) / 2 - run.time[0], mean
 
@@ -191,7 +198,7 @@ def described(angle: Signal, velocity: Signal, torque: Signal) -> str:
         row, column = np.unravel_index(int(np.argmax(sign * torque)), torque.shape)
         if sign * torque[row, column] > 0.0:
             parts.append(
-                f"{abs(torque[row, column]):.3f} N.m that {verb} at {math.degrees(angle[row]):.0f} degrees and"
+                f"{abs(torque[row, column]):#.2g} N.m that {verb} at {math.degrees(angle[row]):.0f} degrees and"
                 f" {velocity[column]:.2g} rad/s"
             )
     opening, closing = (float(torque[:, side].mean()) for side in (velocity > 0.0, velocity < 0.0))
@@ -199,8 +206,8 @@ def described(angle: Signal, velocity: Signal, torque: Signal) -> str:
     resists = "resists" if drag >= 0.0 else "drives"
     slope = float(np.polyfit(angle, torque.mean(axis=1), 1)[0]) if angle.size > 1 else 0.0
     return (
-        f"up to {' and '.join(parts) or 'nothing'}; on average {abs(drag):.3f} N.m that {resists} the movement,"
-        f" and {slope:+.3f} N.m per rad of opening"
+        f"up to {' and '.join(parts) or 'nothing'}; on average {abs(drag):#.2g} N.m that {resists} the movement,"
+        f" and {slope:+#.2g} N.m per rad of opening"
     )
 
 
@@ -213,5 +220,5 @@ def described_over_time(time: Signal, torque: Signal) -> str:
     left = torque[known] - slope * time[known] - offset
     rise, scatter = float(slope * (time[-1] - time[0])), float(np.std(left))
     if abs(rise) > 2.0 * scatter:
-        return f"over the recording it {'grows' if rise > 0.0 else 'falls'} by {abs(rise):.3f} N.m"
-    return f"over the recording it varies by {scatter:.3f} N.m without a trend"
+        return f"over the recording it {'grows' if rise > 0.0 else 'falls'} by {abs(rise):#.2g} N.m"
+    return f"over the recording it varies by {scatter:#.2g} N.m without a trend"

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.missing_torque import MissingTorque, missing_torque
+from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.result import Characteristic
 from pierburg_ros.diagnosis.search.found import Found
@@ -28,24 +29,34 @@ POINTS = 1200
 """Points of the recordings beside a curve. Work: more lie on top of each other."""
 
 
+@dataclass(frozen=True)
+class Lacking:
+    """The load torque [N.m] that the final model lacks while the shaft moves, at angle [rad] and velocity [rad/s]."""
+
+    angle: Signal
+    velocity: Signal
+    torque: Signal
+
+
 def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristic, ...]:
-    """The laws that matter for this actuator; none for a sensor of speed, which shows no angle."""
-    if found.data.actuator.quantity == "speed" or found.data.actuator.drive != "voltage":
+    """The laws of the actuator and its sensor; none for a sensor of speed, which shows no angle."""
+    if found.data.actuator.quantity == "speed":
         return ()
     models = {
         "nominal": conclusion.nominal.model,
         "recalibrated": conclusion.recalibrated.model,
         "final": conclusion.model,
     }
-    run = found.data.runs[0]
+    run, own = found.data.runs[0], found.data.scales
     missing = missing_torque(found.data, run, conclusion.model)
+    lacking = Lacking(missing.angle * own.angle, missing.velocity * own.angle / own.time, missing.torque * own.torque)
     motion = motion_of(run, found.data.actuator, found.data.noise)
     residual = (run.measured - run.simulated(conclusion.model, conclusion.final.switch)) * found.data.angle_per_unit
-    laws = [_friction(models, missing), _load(models, missing, motion.angle), _sensor(models, motion.angle, residual)]
+    laws = [_friction(models, lacking), _load(models, lacking, motion.angle), _sensor(models, motion.angle, residual)]
     return (*laws, *_plays(conclusion.model))
 
 
-def _friction(models: Mapping[str, Model], missing: MissingTorque) -> Characteristic:
+def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
     """Friction over velocity at the middle of the angles at which the shaft moved."""
     fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
     middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
@@ -88,7 +99,7 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
     return result
 
 
-def _load(models: Mapping[str, Model], missing: MissingTorque, angle: Signal) -> Characteristic:
+def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Characteristic:
     """Torque of spring, weight and all else that loads the shaft over its angle."""
     nodes = np.linspace(*_travel(models["final"], angle), NODES)
     curves = {name: (np.degrees(nodes), load_torque(model, nodes)) for name, model in models.items()}

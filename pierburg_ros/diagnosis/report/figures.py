@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.report.limits import Bar
+from pierburg_ros.diagnosis.report.allowed import Bar
 from pierburg_ros.diagnosis.report.places import Place
 from pierburg_ros.diagnosis.report.tried import title
 from pierburg_ros.diagnosis.result import Characteristic, Tried, View

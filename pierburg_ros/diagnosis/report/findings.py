@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from pierburg_ros.actuators.actuator import UNITS
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.limits.limits import Limit
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
-from pierburg_ros.diagnosis.location.windows import windows
+from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
+from pierburg_ros.diagnosis.remainder.resemblance import resemblance
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.report import words
+from pierburg_ros.diagnosis.report.horizons import horizons
 from pierburg_ros.diagnosis.report.tried import distinct, identifier, statuses
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
+    CannotAct,
     Change,
     Diagnosis,
     Effect,
     Errors,
     Estimate,
+    Excluded,
     FitQuality,
     Location,
     NotTestable,
     Regime,
+    Remaining,
     ResidualTorque,
+    RuledOut,
     TorqueOverTime,
 )
 from pierburg_ros.diagnosis.search.candidates import starts_of
@@ -34,29 +43,31 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.diagnosis.verdict.shares import Shares
+from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.estimation.data import Data, rms
+from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
 from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 
 
-def document(found: Found, conclusion: Conclusion) -> Diagnosis:
+def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit]) -> Diagnosis:
     """The whole document."""
     data, actuator = found.data, found.data.actuator
-    named, parameters_found = effects(conclusion), parameters(found, conclusion)
+    named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
-    limits = quality.limits_of(data.runs, actuator, data.noise)
+    short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit)
     places, ranges = located(data, conclusion)
     return Diagnosis(
-        schema=1,
+        schema=2,
         recordings=list({run.number: run.name for run in data.runs}.values()),
         quantity=actuator.quantity,
         unit=actuator.unit,
         verdict=conclusion.verdict,
-        summary=words.cautioned(limits, words.warned(data, conclusion.verdict, text)),
+        summary=words.cautioned(short, words.warned(data, conclusion.verdict, text)),
         effects=named,
         parameters=parameters_found,
         changes=changed,
@@ -65,13 +76,17 @@ def document(found: Found, conclusion: Conclusion) -> Diagnosis:
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
+        ruled_out=[ruled_out(limit) for limit in limits],
+        remaining=remaining(data, conclusion, parts),
+        excluded=excluded(data),
+        cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise),
-        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, limits),
+        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short),
     )
 
 
-def effects(conclusion: Conclusion) -> list[Effect]:
+def effects(conclusion: Conclusion, parts: Shares) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
     final = conclusion.final
     found = []
@@ -85,12 +100,15 @@ def effects(conclusion: Conclusion) -> list[Effect]:
         }
         ties = ties_of(conclusion, variant)
         support = conclusion.supports[variant.effect]
+        share = parts.effects.get(variant.effect)
         found.append(
             Effect(
                 id=variant.effect,
                 confidence=support.confidence,
                 parameters=parameters,
                 indistinguishable_from=ties,
+                share=share.beside if share else None,
+                share_alone=share.alone if share else None,
                 explanation=words.effect_explanation(
                     variant.effect, parameters, ties, words.reason(support, conclusion.final.model.actuator.unit)
                 ),
@@ -123,7 +141,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=found.nominal.values[name],
             value=final.model.values[name],
-            unit=UNITS[name][0],
+            unit=actuator.parameters[name].unit,
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
@@ -152,7 +170,17 @@ def fit_quality(found: Found, conclusion: Conclusion) -> FitQuality:
             final_rmse=rmse(data, samples, conclusion.model, conclusion.final.switch),
         )
 
-    return FitQuality(noise_floor=data.noise, training=errors(data.train), validation=errors(data.test))
+    models = [
+        (conclusion.nominal.model, None),
+        (conclusion.recalibrated.model, None),
+        (conclusion.model, conclusion.final.switch),
+    ]
+    return FitQuality(
+        noise_floor=data.noise,
+        training=errors(data.train),
+        validation=errors(data.test),
+        horizons=horizons(data, models),
+    )
 
 
 def rmse(data: Data, samples: Flags, model: Model, switch: Switch | None = None) -> float | None:
@@ -192,6 +220,37 @@ def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
     ]
 
 
+def ruled_out(limit: Limit) -> RuledOut:
+    """A strength that is excluded, with its unit."""
+    unit = EFFECT[limit.effect].parameter(limit.parameter).unit
+    side = {"above" if limit.above else "below": limit.value}
+    return RuledOut(id=limit.effect, parameter=limit.parameter, unit=unit, **side)
+
+
+def remaining(data: Data, conclusion: Conclusion, parts: Shares) -> Remaining:
+    """What the written model leaves of the first recording, as a share and in words."""
+    residual = data.residual(conclusion.model, conclusion.final.switch)
+    discrepancy = Kalman(data, data.train).most_likely(residual)
+    run = longest(data)
+    left = run.measured - run.simulated(conclusion.model, conclusion.final.switch)
+    return Remaining(share=parts.remains, looks_like=resemblance(data, run, left, discrepancy))
+
+
+def excluded(data: Data) -> list[Excluded]:
+    """The spans that were left out, of every recording."""
+    names = {run.number: run.name for run in data.runs}
+    return [
+        Excluded(start=start, end=end, why=f"{names.get(number, 'a recording')}: messages of the duty are missing")
+        for number, (start, end) in data.left_out
+    ]
+
+
+def cannot_act(actuator: Actuator) -> list[CannotAct]:
+    """Effects that are searched for elsewhere and cannot act in this kind of actuator."""
+    obstacles = {effect.id: actuator.obstacle(effect) for effect in EFFECTS if effect.variants}
+    return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
+
+
 def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
     """Windows and regimes of the first recording in which the mismatch gathers; none where there is none.
 
@@ -208,7 +267,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
             {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
         )
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
-    found = windows(motion.time, mark**2)
+    found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
     return locations(motion, residual, found), regimes(motion, residual)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.report import figures
-from pierburg_ros.diagnosis.report.limits import bars
+from pierburg_ros.diagnosis.report.allowed import bars
 from pierburg_ros.diagnosis.report.places import places
 from pierburg_ros.diagnosis.report.tried import OFF, title
 from pierburg_ros.diagnosis.result import Result, Tried, View
@@ -46,7 +46,6 @@ def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Se
     diagnosis, exhibits = result.diagnosis, result.exhibits
     views = exhibits.views
     found = places(diagnosis.locations)
-    excluded = [dict(each) for each in getattr(diagnosis, "excluded", [])]
     context = {
         "d": diagnosis,
         "meaning": VERDICTS[diagnosis.verdict],
@@ -61,9 +60,6 @@ def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Se
         "torques": torque_plots(diagnosis),
         "limits": limit_plots(result),
         "horizons": horizon_plots(diagnosis),
-        "left_out": [(view.name, *span) for view in views for span in view.left_out],
-        "excluded": excluded,
-        "remaining": getattr(diagnosis, "remaining", None),
     }
     return written(
         "pierburg_ros.diagnosis.report",
@@ -118,7 +114,7 @@ def torque_plots(diagnosis: Diagnosis) -> list[Plot]:
 
 def limit_plots(result: Result) -> list[Plot]:
     """How much of each other effect is still possible."""
-    limits = bars([dict(each) for each in getattr(result.diagnosis, "ruled_out", [])], result.model.values)
+    limits = bars(result.diagnosis.ruled_out, result.model)
     if not limits:
         return []
     caption = "Effects that are not named: the largest size that these recordings allow; dotted: a typical size"
@@ -127,7 +123,7 @@ def limit_plots(result: Result) -> list[Plot]:
 
 def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
     """How the error grows with the time of a prediction."""
-    horizons = getattr(diagnosis.fit, "horizons", [])
+    horizons = diagnosis.fit.horizons
     if not horizons:
         return []
     names = ["the whole" if each.after is None else f"{each.after:g} s" for each in horizons]

@@ -7,7 +7,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from pierburg_ros.diagnosis.schema import Diagnosis
+from pierburg_ros.diagnosis.schema import Diagnosis, RuledOut
 from pierburg_ros.pages.numbers import interval, unit, value
 
 
@@ -21,8 +21,17 @@ def shown(diagnosis: Diagnosis) -> Group:
     if diagnosis.locations:
         places = "; ".join(f"{p.start:.1f} to {p.end:.1f} s ({p.regime})" for p in diagnosis.locations[:3])
         parts.append(Text(f"Where: {places}"))
+    if diagnosis.ruled_out:
+        parts.append(Text(f"Ruled out (95 %): {'; '.join(ruled_out(limit) for limit in diagnosis.ruled_out)}"))
     parts += [Text(f"Next: {step}") for step in diagnosis.advice[:3]]
     return Group(*parts)
+
+
+def ruled_out(limit: RuledOut) -> str:
+    """What a recording excludes, in a few words."""
+    side, value = ("more", limit.above) if limit.above is not None else ("less", limit.below)
+    unit = "" if limit.unit == "1" else f" {limit.unit}"
+    return f"{limit.id}, {limit.parameter.replace('_', ' ')} {side} than {value:.2g}{unit}"
 
 
 def _changed(diagnosis: Diagnosis) -> Table:

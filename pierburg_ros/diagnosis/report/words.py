@@ -97,7 +97,7 @@ def summary(
     )
     drifts = [quantity(name, p) + f" instead of {p.nominal:.4g}" for name, p in parameters.items() if p.drifted]
     dated = [
-        f"{c.parameter.replace('_', ' ')} changes at {c.time:.1f} s from {c.before:.4g} to {c.after:.4g}"
+        f"{c.parameter.replace('_', ' ')} changes at {c.time:.3g} s from {c.before:.4g} to {c.after:.4g}"
         for c in changes
     ]
     if verdict == "consistent":

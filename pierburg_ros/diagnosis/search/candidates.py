@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.effects import EFFECT, EFFECTS, Effect
@@ -25,12 +23,7 @@ def drifting(nominal: Model) -> tuple[str, ...]:
 
 def possible(actuator: Actuator) -> tuple[Effect, ...]:
     """The effects that can act in an actuator and are searched for."""
-    stops = math.isfinite(actuator.lower_stop) or math.isfinite(actuator.upper_stop)
-
-    def acts(effect: Effect) -> bool:
-        return effect.acts_on("voltage", actuator.load, actuator.quantity, stops)
-
-    return tuple(effect for effect in EFFECTS if effect.variants and acts(effect))
+    return tuple(effect for effect in EFFECTS if effect.variants and not actuator.obstacle(effect))
 
 
 def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
@@ -40,7 +33,10 @@ def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
     for effect in possible(data.actuator):
         for variant in effect.variants:
             starts = variant.starts(missing) if callable(variant.starts) else variant.starts
-            found[Variant(effect.id, variant.free, tuple(variant.fixed.items()))] = list(starts)
+            fixed = effect.in_units(variant.fixed, model.scales)
+            found[Variant(effect.id, variant.free, tuple(fixed.items()))] = [
+                effect.in_units(start, model.scales) for start in starts
+            ]
     return found
 
 

@@ -15,9 +15,9 @@ from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Varian
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
-REDATED = np.arange(-4.0, 4.1, 0.25)
-"""Where around its first estimate the moment of a change is looked for again [s]. Work: 33 simulations; a quarter of a
-second apart, which a descent bridges."""
+REDATED = np.arange(-42.0, 43.0, 2.625)
+"""Where around its first estimate the moment of a change is looked for again, in the actuator's own time. Work: 33
+simulations; a quarter of a second apart for the valve, which a descent bridges."""
 LEVEL = 1e-6
 """Difference in cost, as a share of it, within which two moments are on one step. Derived: a moment that does not count
 changes the cost by rounding alone, below 1e-12."""
@@ -31,13 +31,13 @@ def promised(
     Each start is simulated once on top of `base`. What a re-fit of the base can change is projected out. Two starts
     that differ in phase alone count as one with a free phase.
     """
-    projected = _projection(base)
+    projected = projection(base)
     residual = projected(base.solution.residual)
     found = []
     for group in _in_quadrature(starts, variant):
         columns, used = [], []
         for start in group:
-            changed = _change(estimator, base, variant, start)
+            changed = difference(estimator, base, variant, start)
             if changed is not None:
                 columns.append(changed)
                 used.append(start)
@@ -52,14 +52,14 @@ def promised(
 
 def promised_by_drift(fit: Fit) -> float:
     """The chi2 that one linear step from `fit` promises."""
-    left = _projection(fit)(fit.solution.residual)
+    left = projection(fit)(fit.solution.residual)
     return float(left @ left)
 
 
 def largest_mark(estimator: Estimator, base: Fit, variant: Variant, starts: Sequence[Start]) -> float:
     """The largest sum of squares [noise^2] that a start leaves in the signal after a linear re-fit of `base`."""
-    projected = _projection(base)
-    changes = (_change(estimator, base, variant, start) for start in starts)
+    projected = projection(base)
+    changes = (difference(estimator, base, variant, start) for start in starts)
     marks = (projected(change) for change in changes if change is not None)
     return max((float(mark @ mark) for mark in marks), default=0.0)
 
@@ -114,12 +114,12 @@ def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
 def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, float]]]:
     """The cost and the values of `fit` with each of the moments around that of its change."""
     name = f"{fit.explanation.changed}{WHEN}"
-    coordinates = estimator.coordinates(fit.explanation)
-    moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in REDATED]
+    coordinates, shifts = estimator.coordinates(fit.explanation), REDATED * estimator.data.scales.time
+    moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in shifts]
     return [(estimator.chi2_at(fit.explanation, values), values) for values in moved]
 
 
-def _change(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
+def difference(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
     """What an effect added to `base` changes in the training samples [noise]; None where it cannot be added."""
     try:
         return base.solution.residual - estimator.residual(*_added(base, variant, start))
@@ -138,7 +138,7 @@ def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | N
     return with_effect(base.model), switch
 
 
-def _projection(fit: Fit) -> Callable[[Signal], Signal]:
+def projection(fit: Fit) -> Callable[[Signal], Signal]:
     """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
     basis = np.linalg.qr(fit.solution.jacobian)[0]
     return lambda residual: residual - basis @ (basis.T @ residual)

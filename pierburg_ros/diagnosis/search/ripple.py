@@ -10,17 +10,19 @@ from concurrent.futures import Executor
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
 from pierburg_ros.diagnosis.search.candidates import possible
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Ripple
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
 
-LENGTHS = (0.5, 1.0, 2.0, 4.0)
-"""Lengths of the stretches [s] that are fitted in turn, before whole recordings. Measured: 0.5 s ranks the number of
-teeth rightly in 10 of n = 10 trials of cogging in closed loop, 1 s in 9; each next is twice as long."""
-AMPLITUDES = (0.006, 0.012, 0.025)
-"""Amplitudes [N.m] from which a descent may start. Chosen: a factor of two apart over what blind trials conceal, 0.008
-to 0.06; not varied, not scaled with the actuator."""
+LENGTHS = (5.25, 10.5, 21.0, 42.0)
+"""Lengths of the stretches that are fitted in turn, before whole recordings, in the actuator's own time. Measured: 0.5
+s of the valve ranks the number of teeth rightly in 10 of n = 10 trials of cogging in closed loop, 1 s in 9; each next
+is twice as long."""
+AMPLITUDES = (0.0022, 0.0045, 0.0093)
+"""Amplitudes from which a descent may start, as shares of the stall torque. Chosen: a factor of two apart over what
+blind trials conceal, 0.008 to 0.06 N.m of 2.7; not varied."""
 PHASES = tuple(math.pi / 4 * number for number in range(8))
 """Phases [rad] from which it may. Measured: over whole recordings 0.3 rad beside the truth ends at 1.25 to 16 times
 the noise (n = 2); an eighth of a turn leaves at most 0.4 rad, which short stretches bridge."""
@@ -58,7 +60,8 @@ def through_stretches(
     if not grown:
         return []
     held = f"{variant.effect}.{ripple.rhythm}" if ripple.whole else None
-    short, *longer = (Estimator(restarted(estimator.data, length), estimator.nominal) for length in LENGTHS)
+    own = estimator.data.scales.time
+    short, *longer = (Estimator(restarted(estimator.data, length * own), estimator.nominal) for length in LENGTHS)
     start = _scanned(estimator, short, variant, ripple, *min(grown, key=lambda pair: pair[1].chi2), pool)
 
     def descended(pair: tuple[Explanation, Fit]) -> Fit:
@@ -87,8 +90,9 @@ def _scanned(
 ) -> dict[str, float]:
     """The ripple that leaves least over the shortest stretches on top of `base`."""
     missing = missing_torque(estimator.data, estimator.data.runs[0], base.model)
-    names = [f"{variant.effect}.{name}" for name in variant.free]
+    effect, scales = EFFECT[variant.effect], base.model.scales
     rows = itertools.product(AMPLITUDES, dict.fromkeys(ripple.rhythms(missing)), PHASES)
-    starts = [dict(zip(names, row, strict=True)) for row in rows]
+    own = (effect.in_units(dict(zip(variant.free, row, strict=True)), scales) for row in rows)
+    starts = [{f"{variant.effect}.{name}": value for name, value in start.items()} for start in own]
     costs = pool.map(lambda start: short.chi2_at(explanation, {**base.values, **start}), starts)
     return min(zip(costs, starts, strict=True), key=lambda pair: pair[0])[1]

@@ -22,8 +22,8 @@ from pierburg_ros.plant import Model
 Progress = Callable[[str], None]
 
 FIRST_PART = 2 * CYCLE * BLOCK
-"""How much of a recording [s] a first fit takes in. Derived: two cycles of eight blocks, so that every kind of block
-is there twice."""
+"""How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
+that every kind of block is there twice."""
 NEARLY = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early. Chosen: descents to true
 explanations were seen to stop at 1.25 to 16 times the noise (n = 2 trials); not varied."""
@@ -61,7 +61,7 @@ class Search:
         self.progress = progress
         self.drifts = drifting(nominal)
         self.whole = Estimator(data, nominal)
-        self.first_part = Estimator(data.cut(FIRST_PART), nominal)
+        self.first_part = Estimator(data.cut(FIRST_PART * data.scales.time), nominal)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
         self.tried = 0

@@ -13,10 +13,10 @@ from pierburg_ros.estimation.likelihood import EXPLAINED, TIED
 SIGNIFICANT = 60.0
 """Gain in chi2, in effective samples, that one more quantity must bring. Measured: with it none of n = 100 blind
 trials without an effect is given one, and 406 of 411 shown effects are named. Four times `PROMISING`."""
-FORMULATION = 1.15e-4
-"""What simulations of one effect may differ by [rad, root mean square], each right in its own way. Derived: 0.3 mV of
-Hall voltage, the most that steps of 5 us in place of 10 change in the textbook form, over all effects; trials differ by
-0.005 to 0.2 mV from the simulator (`docs/proof.md`)."""
+FORMULATION = 7.3e-5
+"""What simulations of one effect may differ by, root mean square, as a share of the travel, each right in its own way.
+Derived: 0.3 mV of the valve's Hall voltage, the most that steps of 5 us in place of 10 change in the textbook form,
+over all effects; trials differ by 0.005 to 0.2 mV from the simulator (`docs/proof.md`)."""
 PROMISING = 15.0
 """Gain in chi2 that a first fit must promise on top of an adequate explanation to be followed up. Measured: in n = 13
 recordings without an effect, drifted ones included, none gained as much."""
@@ -80,7 +80,7 @@ def allowance(fit: Fit, data: Data) -> float:
     """Chi2 by which two simulations of an explanation may differ; without an effect they agree."""
     if not fit.explanation.variants:
         return 0.0
-    return float(fit.solution.residual.size * (FORMULATION / (data.noise * data.angle_per_unit)) ** 2)
+    return float(fit.solution.residual.size * (FORMULATION * data.scales.reading / data.noise) ** 2)
 
 
 def alike(best: Fit) -> float:

@@ -44,7 +44,7 @@ class DutyRange:
 
 
 def held(time: Signal, random: Random, shortest: float, longest: float, draw: Callable[[], float]) -> Signal:
-    """Random levels, each held for `shortest` to `longest` [s]."""
+    """Random levels, each held for `shortest` to `longest`, in the unit of `time`."""
     levels = np.empty(time.size)
     start = time[0]
     while start <= time[-1]:
@@ -55,7 +55,7 @@ def held(time: Signal, random: Random, shortest: float, longest: float, draw: Ca
 
 
 def staircase(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Up and down in equal stairs of at least 2.5 s, from rest to a little beyond the travel."""
+    """Up and down in equal stairs of at least 2.5 beats, from rest to a little beyond the travel."""
     duration = time[-1] - time[0]
     stairs = int(np.clip(duration / 5.0, 4, 60))
     place = np.floor((time - time[0]) / (duration + 1e-9) * (2 * stairs + 1))
@@ -63,24 +63,24 @@ def staircase(time: Signal, span: DutyRange, random: Random) -> Signal:
 
 
 def steps(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """The paper's steps of Fig. 4: from rest to 24, 20 and 22 % (scaled to the actuator), 6 s each way."""
+    """The paper's steps of Fig. 4: from rest to 24, 20 and 22 % (scaled to the actuator), 6 beats each way."""
     shares = np.array([-1.0, 0.69, -1.0, 0.21, -1.0, 0.45])
     place = np.floor((time - time[0]) / 6.0).astype(int) % shares.size
     return span.at(shares[place])
 
 
 def random_steps(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Random levels held 0.8 to 2.5 s, some to the stops, some negative."""
+    """Random levels held 0.8 to 2.5 beats, some to the stops, some negative."""
     return held(time, random, 0.8, 2.5, lambda: float(span.at(random.uniform(-1.6, 1.4))))
 
 
 def sharp_steps(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Random levels held 0.1 to 0.6 s, so that the shaft seldom settles."""
+    """Random levels held 0.1 to 0.6 beats, so that the shaft seldom settles."""
     return held(time, random, 0.1, 0.6, lambda: float(span.at(random.uniform(-1.8, 2.0))))
 
 
 def ramps(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Triangles of random height, each 3 to 8 s long, then rest for up to 2 s."""
+    """Triangles of random height, each 3 to 8 beats long, then rest for up to 2."""
     duty = np.zeros(time.size)
     start = time[0]
     while start <= time[-1]:
@@ -91,19 +91,19 @@ def ramps(time: Signal, span: DutyRange, random: Random) -> Signal:
 
 
 def standstills(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Steps through the travel with rests of 0.1 to 4 s between them, up and down."""
+    """Steps through the travel with rests of 0.1 to 4 beats between them, up and down."""
     return held(time, random, 0.1, 4.0, lambda: float(span.at(random.uniform(-0.7, 1.0))))
 
 
 def stops(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Full runs onto the open stop and back onto the closed one, at rising duty, 3 s each way."""
+    """Full runs onto the open stop and back onto the closed one, at rising duty, 3 beats each way."""
     place = np.floor((time - time[0]) / 3.0).astype(int)
     shares = np.array([1.1, 1.5, 2.0, 3.0, 5.0])
     return np.where(place % 2 == 1, span.at(shares[(place // 2) % shares.size]), 0.0)
 
 
 def negative(time: Signal, span: DutyRange, random: Random) -> Signal:
-    """Negative duty against the closed stop, then a step open, 2 s each: flanks part, dead bands show."""
+    """Negative duty against the closed stop, then a step open, 2 beats each: flanks part, dead bands show."""
     place = np.floor((time - time[0]) / 2.0).astype(int)
     closing = -span.low * np.array([0.25, 0.5, 1.0, 1.5])[(place // 2) % 4]
     opening = span.at(np.array([0.3, 0.6, 0.9])[(place // 2) % 3])
@@ -141,8 +141,17 @@ DUTY_RECIPES = {
 }
 SETPOINT_RECIPES = {function.__name__: function for function in (setpoints, square, sweep)}
 DURATION = {"staircase": 150.0, "steps": 36.0, "rich": 120.0, "stops": 30.0, "negative": 24.0}
-"""Duration [s] of a recipe where none is given; 60 s for the others. Derived: what the recipe takes once, 36 s for
-three steps of 6 s each way; the staircase has 2.5 s a stair."""
+"""Duration [beats] of a recipe where none is given; 60 for the others. Derived: what the recipe takes once, 36 for
+three steps of 6 each way; the staircase has 2.5 a stair."""
+BEAT = 10.473
+"""The time in which the recipes of duty count, in the actuator's own. Given: a second for the valve, in which the paper
+counts."""
+
+
+def usual_duration(name: str, model: Model) -> float:
+    """Duration [s] of recipe `name` where none is given; setpoints are the valve's."""
+    beat = BEAT * model.scales.time if name in DUTY_RECIPES else 1.0
+    return float(f"{DURATION.get(name, 60.0) * beat:.3g}")
 
 
 def purpose(name: str) -> str:
@@ -154,8 +163,8 @@ def purpose(name: str) -> str:
 
 
 def duty_sequence(name: str, model: Model, time: Signal, seed: int = 0) -> Signal:
-    """Duty of recipe `name` at `time` [s], scaled to the travel of `model`, shape (samples,)."""
-    duty = DUTY_RECIPES[name](time, DutyRange.of(model), np.random.default_rng(seed))
+    """Duty of recipe `name` at `time` [s], scaled to travel and time of `model`, shape (samples,)."""
+    duty = DUTY_RECIPES[name](time / (BEAT * model.scales.time), DutyRange.of(model), np.random.default_rng(seed))
     return np.asarray(np.clip(np.round(duty, 5), -1.0, 1.0))
 
 

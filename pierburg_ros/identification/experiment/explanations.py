@@ -19,7 +19,7 @@ def explanation(name: str, base: Model) -> Model:
     if name == NOMINAL:
         return base
     if name in EFFECT:
-        return base.with_values(EFFECT[name].typical_values(base.values))
+        return base.with_values(EFFECT[name].typical_values(base.values, base.scales))
     if Path(name).is_file():
         return read_model(name)
     raise InputError(

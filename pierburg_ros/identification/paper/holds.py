@@ -7,19 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-SHORTEST = 0.4
-"""A hold must last this long [s], clear of the stops, to say where the shaft settles. Chosen: a third of the valve's
-time constant, 1.15 s; not varied."""
-STOP_MARGIN = 0.02
-"""A shaft within this angle [rad] of a stop may be held by it. Derived: 17 times a noise of 3 mV, so that a soft stop
-counts too."""
+SHORTEST = 4.2
+"""A hold must last this long, in the actuator's own time, clear of the stops, to say where the shaft settles. Chosen:
+0.4 s for the valve, a third of its time constant, 1.15 s; not varied."""
+STOP_MARGIN = 0.0127
+"""A shaft within this share of the travel from a stop may be held by it. Derived: 17 times a noise of 3 mV for the
+valve, so that a soft stop counts too."""
+TRAVEL = 0.0013
+"""Share of the travel by which the shaft moves at least in a hold that says where it settles. Derived: 2 mrad of the
+valve, less than two standard deviations of a noise of 3 mV."""
+SETTLES = (0.21, 210.0)
+"""Range of the time constant with which the shaft settles, in the actuator's own time. Chosen: 20 ms to 20 s for the
+valve, whose own is 1.15 s; not varied."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +66,9 @@ def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     """The stretches of constant duty, in order, each cut to its longest part clear of the stops."""
     duty = recording.command.at(recording.time, before=0.0)
     angle = angle_of(recording, actuator)
-    clear = (angle > actuator.lower_stop + STOP_MARGIN) & (angle < actuator.upper_stop - STOP_MARGIN)
+    own = Scales.of(actuator)
+    margin = STOP_MARGIN * own.angle
+    clear = (angle > actuator.lower_stop + margin) & (angle < actuator.upper_stop - margin)
     edges = np.flatnonzero((np.diff(duty) != 0.0) | (np.diff(clear.astype(int)) != 0)) + 1
     parts = [
         slice(first + 1, last)
@@ -70,11 +78,11 @@ def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     return [
         Hold(float(duty[part.start]), recording.time[part], angle[part])
         for part in parts
-        if recording.time[part.stop - 1] - recording.time[part.start] >= SHORTEST
+        if recording.time[part.stop - 1] - recording.time[part.start] >= SHORTEST * own.time
     ]
 
 
-def moving(found: list[Hold], noise: float) -> list[Hold]:
+def moving(found: list[Hold], noise: float, scales: Scales) -> list[Hold]:
     """Those of `found` in which the shaft moves from the first fifth to the last; `noise` [rad]."""
     kept = []
     for hold in found:
@@ -82,12 +90,12 @@ def moving(found: list[Hold], noise: float) -> list[Hold]:
         means = [float(np.mean(hold.angle[part])) for part in (slice(fifth), slice(-2 * fifth, -fifth))]
         travel = abs(np.mean(hold.angle[-fifth:]) - means[0])
         late = abs(np.mean(hold.angle[-fifth:]) - means[1])
-        if travel > max(8.0 * noise / np.sqrt(fifth), 2e-3) and late > 2.0 * noise / np.sqrt(fifth):
+        if travel > max(8.0 * noise / np.sqrt(fifth), TRAVEL * scales.angle) and late > 2.0 * noise / np.sqrt(fifth):
             kept.append(hold)
     return kept
 
 
-def settled(found: list[Hold]) -> tuple[list[Settled], float]:
+def settled(found: list[Hold], scales: Scales) -> tuple[list[Settled], float]:
     """Where the shaft settles in each of the `moving` holds, and the time constant [s] of all of them.
 
     While sliding, the angle approaches its end exponentially and never quite reaches it (equations (5) and
@@ -97,9 +105,8 @@ def settled(found: list[Hold]) -> tuple[list[Settled], float]:
     def misfit(logarithm: float) -> float:
         return sum(_approach(hold, float(np.exp(logarithm)))[2] for hold in found)
 
-    search = optimize.minimize_scalar(
-        misfit, bounds=(np.log(0.02), np.log(20.0)), method="bounded", options={"xatol": 1e-7}
-    )
+    bounds = tuple(np.log(np.multiply(SETTLES, scales.time)))
+    search = optimize.minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-7})
     least, step = float(search.fun), 1e-3
     curvature = max((misfit(search.x + step) + misfit(search.x - step) - 2.0 * least) / step**2, 1e-300)
     samples = sum(hold.time.size - 2 for hold in found)

@@ -9,10 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.identification.paper.holds import Settled, angle_noise, holds, moving, settled
 from pierburg_ros.recording import Recording
 
+SMALLEST = 1e-9
+"""Least standard deviation of a settled angle, as a share of the largest angle. Derived: a simulation without noise is
+rounded by no more."""
 FEWEST = 3
 """Each branch needs this many settled angles. Derived: two fix a line, one more says whether it is one."""
 
@@ -47,14 +50,15 @@ class StaticCharacteristic:
 
 def static_characteristic(recordings: Sequence[Recording], actuator: Actuator) -> StaticCharacteristic | None:
     """The static characteristic from all stretches of constant duty; None where a branch has too few."""
+    scales = Scales.of(actuator)
     found = [
         hold
         for recording in recordings
-        for hold in moving(holds(recording, actuator), angle_noise(recording, actuator))
+        for hold in moving(holds(recording, actuator), angle_noise(recording, actuator), scales)
     ]
     if actuator.load != "spring" or not found:
         return None
-    points, time_constant = settled(found)
+    points, time_constant = settled(found, scales)
     opening = sum(point.direction > 0 for point in points)
     if min(opening, len(points) - opening) < FEWEST:
         return None
@@ -63,7 +67,7 @@ def static_characteristic(recordings: Sequence[Recording], actuator: Actuator) -
 
 def _line(points: list[Settled], time_constant: float) -> StaticCharacteristic:
     duty, angle, direction, doubt = np.array([(p.duty, p.angle, p.direction, p.doubt) for p in points]).T
-    weight = 1.0 / np.maximum([p.deviation for p in points], 1e-9)
+    weight = 1.0 / np.maximum([p.deviation for p in points], SMALLEST * np.max(np.abs(angle)))
     plain = np.column_stack([duty, np.ones(duty.size), direction])
     columns = plain * weight[:, None]
     coefficients, common = np.linalg.lstsq(columns, np.column_stack([angle, doubt]) * weight[:, None])[0].T

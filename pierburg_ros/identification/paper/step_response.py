@@ -12,15 +12,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Signal
 from pierburg_ros.identification.paper.holds import STOP_MARGIN, angle_of
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
 from pierburg_ros.recording import Recording
 
-FASTEST = 1e6
-"""Largest pole that is tried [rad/s]. Derived: 15 times the fast pole of Table I, 66 krad/s, and 2,000 samples at 500
-Hz in one: no recording tells more."""
+FASTEST = 1e5
+"""Largest pole that is tried, over the actuator's own time. Derived: 1e6 rad/s for the valve, 15 times the fast pole of
+Table I, 66 krad/s, and 2,000 samples at 500 Hz in one: no recording tells more."""
+
+
+REST = 0.21
+"""How long before a step the shaft is looked at, in the actuator's own time. Chosen: 20 ms for the valve, ten samples;
+not varied."""
+SHORTEST = 5.2
+"""Length of the shortest step that is fitted, in the actuator's own time. Chosen: half a second for the valve, less
+than half of its time constant; not varied."""
 
 
 @dataclass(frozen=True)
@@ -56,18 +64,18 @@ def second_order(time: Signal, slow: float, fast: float) -> Signal:
 
 def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
     """The upward steps of duty that find the shaft on the closed stop, each until the duty changes again."""
-    angle = angle_of(recording, actuator)
-    found = []
-    times = [*recording.command.time, recording.time[-1] + 1e-9]
+    angle, own = angle_of(recording, actuator), Scales.of(actuator)
+    margin, found = STOP_MARGIN * own.angle, []
+    times = [*recording.command.time, np.nextafter(recording.time[-1], np.inf)]
     for start, end, duty in zip(times[:-1], times[1:], recording.command.values, strict=True):
         inside = (recording.time >= start) & (recording.time < end)
-        before = (recording.time < start) & (recording.time >= start - 0.02)
-        if end - start < 0.5 or not before.any() or np.mean(angle[before]) > 0.5 * STOP_MARGIN:
+        before = (recording.time < start) & (recording.time >= start - REST * own.time)
+        if end - start < SHORTEST * own.time or not before.any() or np.mean(angle[before]) > 0.5 * margin:
             continue
-        open_stop = angle[inside] > actuator.upper_stop - STOP_MARGIN
+        open_stop = angle[inside] > actuator.upper_stop - margin
         length = int(np.argmax(open_stop)) if open_stop.any() else open_stop.size
         step = Step(float(duty), recording.time[inside][:length] - start, angle[inside][:length])
-        if length > 10 and step.angle[-1] > 2.0 * STOP_MARGIN:
+        if length > 10 and step.angle[-1] > 2.0 * margin:
             found.append(step)
     return found
 
@@ -79,6 +87,7 @@ def step_response(
     found = [step for recording in recordings for step in steps_from_rest(recording, actuator)]
     if not found or static is None:
         return None
+    fastest = FASTEST / Scales.of(actuator).time
     still = static.preload_duty.value + static.coulomb_duty.value
     voltage = [(step.duty - still) * supply for step in found]
 
@@ -89,7 +98,7 @@ def step_response(
         ]
         return np.concatenate(parts)
 
-    start = np.log([static.gain.value / supply, 1.0 / static.time_constant, 0.5 * FASTEST])
+    start = np.log([static.gain.value / supply, 1.0 / static.time_constant, 0.5 * fastest])
     best = optimize.least_squares(
         lambda two: residual(np.array([*two, start[2]])), start[:2], x_scale="jac", ftol=1e-12
     )
@@ -101,21 +110,21 @@ def step_response(
         float(gain * deviation[0]),
         float(slow),
         float(slow * deviation[1]),
-        _fast_pole_bound(residual, best.x, variance),
+        _fast_pole_bound(residual, best.x, variance, fastest),
         float(np.sqrt(np.mean(best.fun**2))),
         tuple(found),
     )
 
 
-def _fast_pole_bound(residual: Callable[[Signal], Signal], point: Signal, variance: float) -> float:
+def _fast_pole_bound(residual: Callable[[Signal], Signal], point: Signal, variance: float, fastest: float) -> float:
     """Fast pole [rad/s] whose misfit, with gain and slow pole refitted, is 3.84 variances above the best."""
 
     def excess(fast: float) -> float:
         fitted = optimize.least_squares(lambda two: residual(np.array([*two, fast])), point, ftol=1e-12)
         return float(2.0 * fitted.cost)
 
-    least = excess(np.log(FASTEST))
-    low, high = point[1] + np.log(2.0), np.log(FASTEST)
+    least = excess(np.log(fastest))
+    low, high = point[1] + np.log(2.0), np.log(fastest)
     for _ in range(25):
         middle = 0.5 * (low + high)
         if excess(middle) - least > 3.84 * variance:

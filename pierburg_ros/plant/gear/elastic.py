@@ -13,12 +13,12 @@ from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.motion.body import PARTED, Line, after, balance, error, piece, share, torque_at, turn
-from pierburg_ros.plant.motion.events import SHORTEST, allowed, lower, motor_onset, next_step, shorter, upper
+from pierburg_ros.plant.motion.events import allowed, lower, motor_onset, next_step, shorter, shortest, upper
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.friction import level
 
-FLOOR = 1e-5
-"""Shortest time constant of the twist [s]; stands in for a damping of 0."""
+FLOOR = 1e-4
+"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0."""
 EVEN = 0.02
 """Longest step of a shaft that stands, as a share of the period of a pulsating load."""
 
@@ -67,8 +67,8 @@ def _grip(p, s, twist, rate, angle, velocity, bristle, time):
         resisting, bending, viscous = shaft.resistance(p, s, angle, velocity, bristle, time)
     pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
     if p.backlash.gap > 0.0 and not pushes:
-        return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.LEAST_DAMPING))
-    damping = max(gear.damping, FLOOR * gear.stiffness - viscous) if s.direction != 0.0 else gear.damping
+        return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.least_damping(p)))
+    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness - viscous) if s.direction != 0.0 else gear.damping
     return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous)
 
 
@@ -202,17 +202,17 @@ def move(p, s, remaining):
     """Move for at most `remaining` [s], up to the next event; gives the time used."""
     _set_directions(p, s)
     grip, line = _line(p, s)
-    step = min(remaining, max(s.step, SHORTEST), turn(p, s, s.motor_velocity, line))
+    step = min(remaining, max(s.step, shortest(p)), turn(p, s, s.motor_velocity, line))
     if p.external_load.frequency > 0.0:
-        step = max(min(step, EVEN / p.external_load.frequency), SHORTEST)
+        step = max(min(step, EVEN / p.external_load.frequency), shortest(p))
     while True:
         sides = _trial(p, s, grip, line, step)
-        excess = max(sides.wrong / allowed(sides.motor_travel), abs(sides.motor_travel) / p.finest)
-        if not excess > 1.0 or step <= SHORTEST:
+        excess = max(sides.wrong / allowed(p, sides.motor_travel), abs(sides.motor_travel) / p.finest)
+        if not excess > 1.0 or step <= shortest(p):
             break
-        step = shorter(step, excess)
+        step = shorter(p, step, excess)
     s.step = next_step(s.step, step, remaining, excess)
-    breaks = step > SHORTEST and _breaks(p, s, sides, step)
+    breaks = step > shortest(p) and _breaks(p, s, sides, step)
     if breaks:
         step = _breaking_time(p, s, grip, line, step)
         sides = _trial(p, s, grip, line, step)
@@ -234,7 +234,7 @@ def _set_directions(p, s):
 @kernel
 def _breaking_time(p, s, grip, line, step):
     early, late = 0.0, step
-    while late - early > SHORTEST:
+    while late - early > shortest(p):
         middle = 0.5 * (early + late)
         if _breaks(p, s, _trial(p, s, grip, line, middle), middle):
             late = middle

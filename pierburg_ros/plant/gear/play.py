@@ -12,13 +12,15 @@ from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.gear.rigid import slide_joined
 from pierburg_ros.plant.motion.body import JOINED, PARTED, balance, piece
-from pierburg_ros.plant.motion.events import SHORTEST, hold, lower, motor_onset, onset, slide, upper
+from pierburg_ros.plant.motion.events import hold, lower, motor_onset, onset, shortest, slide, upper
 from pierburg_ros.plant.torques.drive import relaxed_current
 
-TURNS = 1e-5
-"""Motor and shaft that both move on their own do so in turns of this length [s]; 10 rad/s is 0.1 mrad a turn."""
-WATCH = 2e-4
-"""A shaft that stands between parted teeth is looked at again after this time [s] where its load changes."""
+TURNS = 1e-4
+"""Motor and shaft that both move on their own do so in turns of this share of the actuator's own time; at no-load speed
+that is a ten-thousandth of the travel a turn."""
+WATCH = 2e-3
+"""A shaft that stands between parted teeth is looked at again after this share of the actuator's own time where its
+load changes."""
 
 
 @kernel
@@ -67,11 +69,11 @@ def _torn(p, s, angle, velocity, bristle, time):
 def _tearing_time(p, s, remaining):
     """How long [s] the flanks stay together: not longer than one internal step is good for."""
     line = balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.presliding.bristle)
-    late = remaining if p.plain else min(remaining, max(s.step, SHORTEST))
+    late = remaining if p.plain else min(remaining, max(s.step, shortest(p)))
     if not _tears(p, s, line, late):
         return late
     early = 0.0
-    while late - early > SHORTEST:
+    while late - early > shortest(p):
         middle = 0.5 * (early + late)
         if _tears(p, s, line, middle):
             late = middle
@@ -94,9 +96,9 @@ def _move_parted(p, s, remaining):
     if s.motor_direction == 0.0:
         s.motor_direction = motor_onset(p, s, 0.0, s.current)
     if s.direction != 0.0:
-        return _take_turns(p, s, min(remaining, TURNS))
+        return _take_turns(p, s, min(remaining, TURNS * p.own.time))
     if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
-        remaining = min(remaining, WATCH)
+        remaining = min(remaining, WATCH * p.own.time)
     if s.motor_direction == 0.0:
         return _wait(p, s, remaining)
     used, meets = _turn_motor(p, s, s.angle - p.backlash.gap, s.angle, remaining)

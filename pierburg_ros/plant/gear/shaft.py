@@ -14,8 +14,15 @@ from pierburg_ros.plant.motion.events import lower, upper
 from pierburg_ros.plant.torques.friction import damping, hold, level
 from pierburg_ros.plant.torques.load import load
 
-LEAST_DAMPING = 1e-5
-"""Damping [N.m.s/rad] of a shaft that nothing damps: 0.1 N.m moves it at 10,000 rad/s, at once for all purposes."""
+LEAST_DAMPING = 6e-5
+"""Damping of a shaft that nothing damps, as a share of stall torque over no-load speed: a hundredth of the one moves it
+at a hundred times the other, at once for all purposes."""
+
+
+@kernel
+def least_damping(p):
+    """Damping [N.m.s/rad] of a shaft that nothing damps."""
+    return LEAST_DAMPING * p.own.torque * p.own.time / p.own.angle
 
 
 @kernel
@@ -67,7 +74,7 @@ def bristle_after(p, s, travel):
 def drift(p, s, step):
     """Let the shaft go on its own for a short `step` [s], up to a rigid stop; it rests where nothing drives it on."""
     torque, stiffness, viscous = resistance(p, s, s.angle, s.velocity, s.presliding.bristle, s.time)
-    slack = max(viscous, LEAST_DAMPING)
+    slack = max(viscous, least_damping(p))
     velocity = -torque / slack
     if velocity * s.direction <= 0.0:
         s.velocity = s.direction = 0.0

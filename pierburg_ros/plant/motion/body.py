@@ -20,6 +20,10 @@ PARTED = 1
 """The motor alone, its teeth between the flanks or elastic."""
 
 
+STILL = 6e-11
+"""Swings of the velocity smaller than this share of the no-load speed are none."""
+
+
 class Line(NamedTuple):
     """Net torque on a body as a straight line: force - slope dw - stiffness dangle + rate dt + gain dT_m.
 
@@ -167,7 +171,7 @@ def turn(p, s, velocity, line):
         if stiffness <= 0.25 * damping * damping:
             return math.inf
         jerk = line.rate / p.total_inertia - damping * acceleration - stiffness * velocity
-        return turning_time(damping, stiffness, acceleration, jerk)
+        return _turn(p, damping, stiffness, acceleration, jerk)
     damping, stiffness, _, push, _ = _inductive(p, s, velocity, line)
     square = stiffness - 0.25 * damping * damping
     if square <= 0.0:
@@ -176,7 +180,16 @@ def turn(p, s, velocity, line):
     swing = acceleration - 0.5 * damping * settling
     if settling * settling + swing * swing / square < (velocity + settling) ** 2:
         return math.inf
-    return turning_time(damping, stiffness, acceleration, push - stiffness * velocity - damping * acceleration)
+    return _turn(p, damping, stiffness, acceleration, push - stiffness * velocity - damping * acceleration)
+
+
+@kernel
+def _turn(p, damping, stiffness, acceleration, jerk):
+    """Time [s] to the next turn of a velocity that swings; infinite where it hardly does."""
+    square = stiffness - 0.25 * damping * damping
+    if abs(acceleration) * math.sqrt(square) + abs(jerk) < STILL * p.own.angle / p.own.time * square:
+        return math.inf
+    return turning_time(damping, stiffness, acceleration, jerk)
 
 
 @kernel

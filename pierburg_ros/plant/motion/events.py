@@ -16,14 +16,23 @@ from pierburg_ros.plant.torques import friction
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.load import load, ripple
 
-TOLERANCE = 3e-7
-"""Error that an internal step may make [rad], plus `SHARE` of its travel; 3e-7 rad is 0.8 microvolt."""
+TOLERANCE = 2e-7
+"""Error that an internal step may make, as a share of the actuator's travel, plus `SHARE` of its own; of the valve's
+Hall voltage it is 0.8 microvolt."""
 SHARE = 1e-4
 """See `TOLERANCE`."""
-SHORTEST = 1e-8
-"""Internal steps are not shortened below this [s]."""
+SHORTEST = 1e-7
+"""Internal steps are not shortened below this share of the actuator's own time; 10 ns for the valve."""
+SAME_MOMENT = 1e-11
+"""Share of the actuator's own time within which a moment is found."""
 GROWTH = 30.0
 """Largest exponent a step may grow by where friction falls with velocity."""
+
+
+@kernel
+def shortest(p):
+    """Length [s] below which internal steps are not shortened."""
+    return SHORTEST * p.own.time
 
 
 @kernel
@@ -79,7 +88,7 @@ def hold(p, s, remaining):
             step = min(step, 0.02 / p.external_load.frequency)
     if inductive:
         step = min(step, 2.0 * p.armature_inductance.inductance / p.armature_resistance)
-    step = _standing_time(p, s, min(max(step, SHORTEST), remaining))
+    step = _standing_time(p, s, min(max(step, shortest(p)), remaining))
     if inductive:
         s.current = relaxed_current(p, s, step)
     s.time += step
@@ -129,14 +138,14 @@ def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
             travel, ended, amperes = piece(p, s, step, velocity, line)
         if p.plain:
             break
-        if abs(travel) > p.finest and step > SHORTEST:
-            step = max(0.9 * step * p.finest / abs(travel), SHORTEST)
+        if abs(travel) > p.finest and step > shortest(p):
+            step = max(0.9 * step * p.finest / abs(travel), shortest(p))
             continue
-        excess = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line) / allowed(travel)
-        if not excess > 1.0 or step <= SHORTEST:
+        excess = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line) / allowed(p, travel)
+        if not excess > 1.0 or step <= shortest(p):
             s.step = next_step(s.step, step, remaining, excess)
             break
-        step = shorter(step, excess)
+        step = shorter(p, step, excess)
     _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes)
     if p.linear:
         s.steady = step == remaining and not rests and not stops
@@ -164,21 +173,21 @@ def _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes):
 def _first_step(p, s, slope, remaining):
     step = remaining
     if not p.plain:
-        step = min(step, max(s.step, SHORTEST))
+        step = min(step, max(s.step, shortest(p)))
         if slope < 0.0:
-            step = min(step, max(-GROWTH * p.total_inertia / slope, SHORTEST))
+            step = min(step, max(-GROWTH * p.total_inertia / slope, shortest(p)))
         if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
             ahead = external_load.next_switch(p.external_load, s.time) - s.time
-            step = min(step, max(ahead, SHORTEST))
+            step = min(step, max(ahead, shortest(p)))
             if p.external_load.frequency > 0.0:
                 step = min(step, 0.1 / p.external_load.frequency)
     return step
 
 
 @kernel
-def allowed(travel):
+def allowed(p, travel):
     """Error [rad] that a step of this `travel` [rad] may make."""
-    return TOLERANCE + SHARE * abs(travel)
+    return TOLERANCE * p.own.angle + SHARE * abs(travel)
 
 
 @kernel
@@ -189,9 +198,9 @@ def next_step(before, step, remaining, excess):
 
 
 @kernel
-def shorter(step, excess):
+def shorter(p, step, excess):
     """Length [s] to try instead of a `step` whose error is `excess` times the allowed one."""
-    return max(step * max(0.05, 0.8 * excess ** (-1.0 / 3.0)), SHORTEST)
+    return max(step * max(0.05, 0.8 * excess ** (-1.0 / 3.0)), shortest(p))
 
 
 @kernel
@@ -228,7 +237,7 @@ def _moment(p, s, step, velocity, line, target):
         at_early = -at_late
     kept = 0
     for _ in range(80):
-        if late - early <= 1e-12 or at_late == 0.0:
+        if late - early <= SAME_MOMENT * p.own.time or at_late == 0.0:
             break
         middle = late - at_late * (late - early) / (at_late - at_early)
         if not early < middle < late:

@@ -10,8 +10,6 @@ import math
 
 from pierburg_ros.kernel import kernel
 
-STILL = 1e-9
-"""Swings of the velocity smaller than this [rad/s] are none."""
 JUST_TURNED = 1e-2
 """A turn nearer than this [rad of the rotation] is the one that has just been passed."""
 SLOW = 1e-3
@@ -103,8 +101,6 @@ def turning_time(damping, stiffness, acceleration, jerk):
     if square <= 0.0:
         return math.inf
     frequency = math.sqrt(square)
-    if abs(acceleration) * frequency + abs(jerk) < STILL * square:
-        return math.inf
     phase = math.atan2(-acceleration * frequency, jerk + 0.5 * damping * acceleration)
     while phase <= JUST_TURNED:
         phase += math.pi

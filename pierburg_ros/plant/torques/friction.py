@@ -15,8 +15,8 @@ from pierburg_ros.effects import (
 )
 from pierburg_ros.kernel import kernel
 
-NOTHING = 1e-9
-"""Torque [N.m] that is no push: bristles have come to rest when nothing more than this drives them."""
+NOTHING = 4e-10
+"""Share of the stall torque that is no push: bristles have come to rest when nothing more than this drives them."""
 
 
 @kernel
@@ -56,5 +56,5 @@ def hold(p, share, direction, angle, motor_torque, bristle):
     Bristles hold by leaning, so what they bear is part of the balance, and any push beyond it moves them.
     """
     if p.presliding.stiffness != 0.0:
-        return NOTHING + direction * share * p.presliding.stiffness * bristle
+        return NOTHING * p.own.torque + direction * share * p.presliding.stiffness * bristle
     return share * level(p, direction, 0.0, angle, motor_torque)[0]

@@ -15,9 +15,14 @@ from pierburg_ros.kernel import kernel
 
 
 @kernel
-def level(p: Any, angle: float, velocity: float, motor_torque: float) -> float:
-    """Dry friction while opening or at rest [N.m]; closing adds `coulomb_difference`."""
+def level(p: Any, rest: float, angle: float, velocity: float, motor_torque: float) -> float:
+    """Dry friction while opening or at rest [N.m]; closing adds `coulomb_difference`.
+
+    Outside the catalogue it grows with the time at `rest` [s] (Dieterich's ageing of contacts).
+    """
     torque: float = p.coulomb_friction + p.load_dependent_friction.coefficient * abs(motor_torque)
+    if p.ageing_friction.growth != 0.0:
+        torque *= 1.0 + p.ageing_friction.growth * (1.0 - exp(-rest / p.ageing_friction.time_constant))
     if p.static_friction.breakaway_torque > 0.0:
         excess = p.static_friction.breakaway_torque - p.coulomb_friction
         torque += excess * stribeck(velocity, p.static_friction.stribeck_velocity)

@@ -83,6 +83,8 @@ def remember(state: Any, p: Any, h: float) -> None:
     if p.relaxation.stiffness != 0.0:
         share = h / (p.relaxation.time_constant + h)
         state.relaxed_angle += share * (state.angle - state.relaxed_angle)
+    if p.ageing_friction.growth != 0.0:
+        state.rest = state.rest + h if state.velocity == 0.0 else 0.0
     if p.spring_set.torque != 0.0:
         state.time_open += h * max(state.angle, 0.0)
     if p.hysteretic_spring.stiffness != 0.0:

@@ -50,7 +50,7 @@ def shaft_load(state: Any, p: Any, h: float) -> tuple[float, float]:
 def single_body(state: Any, p: Any, torque: float, damping: float, h: float) -> None:
     """Step motor and shaft as one under the motor torque `torque - damping w`."""
     load, load_slope = shaft_load(state, p, h)
-    dry = level(p, state.angle, state.velocity, torque - damping * state.velocity)
+    dry = level(p, state.rest, state.angle, state.velocity, torque - damping * state.velocity)
     reach, offset, slope = resistance(p, dry, state.velocity, state.bristle, h)
     inertia = p.total_inertia / h
     push = inertia * state.velocity + torque - load - cogging(state.angle, p) - offset
@@ -66,7 +66,7 @@ def motor_alone(
 ) -> float:
     """Velocity of the motor side [rad/s] while the gear takes `passed + passed_slope w` from it."""
     share = p.backlash.motor_friction_share if p.backlash.gap > 0.0 else 0.0
-    dry = level(p, state.motor_angle, state.motor_velocity, torque - damping * state.motor_velocity)
+    dry = level(p, state.rest, state.motor_angle, state.motor_velocity, torque - damping * state.motor_velocity)
     reach, offset, slope = resistance(p, dry, state.motor_velocity, state.motor_bristle, h)
     inertia = p.total_inertia / h
     push = inertia * state.motor_velocity + torque - cogging(state.motor_angle, p) - share * offset - passed
@@ -78,7 +78,7 @@ def shaft_alone(state: Any, p: Any, motor_torque: float, passed: float, passed_s
     """Velocity of the massless shaft [rad/s] while the gear gives it `passed - passed_slope w`."""
     share = 1.0 - p.backlash.motor_friction_share if p.backlash.gap > 0.0 else 1.0
     load, load_slope = shaft_load(state, p, h)
-    dry = level(p, state.angle, state.velocity, motor_torque)
+    dry = level(p, state.rest, state.angle, state.velocity, motor_torque)
     reach, offset, slope = resistance(p, dry, state.velocity, state.bristle, h)
     push = passed - load - share * offset
     return solve(push, load_slope + share * slope + passed_slope, share * reach, share, p)
@@ -88,11 +88,11 @@ def shaft_alone(state: Any, p: Any, motor_torque: float, passed: float, passed_s
 def advance_sides(state: Any, p: Any, motor_velocity: float, velocity: float, motor_torque: float, h: float) -> None:
     """Move both sides of the gear, each with its own bristle."""
     if p.presliding.stiffness > 0.0:
-        dry = level(p, state.motor_angle, state.motor_velocity, motor_torque)
+        dry = level(p, state.rest, state.motor_angle, state.motor_velocity, motor_torque)
         state.motor_bristle = bristle(p, dry, state.motor_bristle, state.motor_velocity, motor_velocity, h)
     state.motor_angle += h * motor_velocity
     state.motor_velocity = motor_velocity
-    settle(state, p, velocity, level(p, state.angle, state.velocity, motor_torque), h)
+    settle(state, p, velocity, level(p, state.rest, state.angle, state.velocity, motor_torque), h)
 
 
 @kernel

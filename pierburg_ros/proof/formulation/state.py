@@ -22,6 +22,7 @@ STATE = np.dtype(
         ("relaxed_angle", np.float64),  # rad, where the viscoelastic branch has settled
         ("time_open", np.float64),  # rad.s, angle summed over time
         ("hysteretic_torque", np.float64),  # N.m
+        ("rest", np.float64),  # s since the shaft last moved
     ]
 )
 

@@ -56,6 +56,7 @@ OUTSIDE: dict[str, tuple[str, ...]] = {
     "hysteretic_spring": ("stiffness", "yield_torque"),  # N.m/rad, N.m: rate-free hysteresis
     "square_drag": ("coefficient",),  # N.m.s^2/rad^2: torque coefficient w abs(w)
     "detent": ("torque", "center", "width"),  # N.m, rad, rad: a magnetic notch that pulls to its centre
+    "ageing_friction": ("growth", "time_constant"),  # 1, s: dry friction grows by `growth` while the shaft rests
 }
 
 EFFECTS = {**CATALOGUE, **OUTSIDE}

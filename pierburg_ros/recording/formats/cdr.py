@@ -21,6 +21,10 @@ CLOCK = "rosgraph_msgs/msg/Clock"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 HEADER = 4
 LITTLE = b"\x00\x01\x00\x00"
+NAMES = HEADER + 8
+"""Where the frame and the names of sensor_msgs/JointState begin, after its stamp."""
+ARRAYS = ("position", "velocity", "effort")
+"""What sensor_msgs/JointState has of each joint, in this order."""
 SHAFT = "swirl_shaft"
 """Name of the joint that is taken where a message carries several."""
 
@@ -61,24 +65,40 @@ def stamp(messages: Messages) -> Integers:
 
 
 def position(messages: Messages) -> NDArray[np.float64]:
-    """Shaft position [rad] of sensor_msgs/JointState, looked up anew for each length of message."""
-    values = np.empty(len(messages))
-    offsets: dict[int, int] = {}
+    """Shaft position [rad] of sensor_msgs/JointState: that of the only joint, or of the one with the shaft's name."""
+    return joint(messages, "position", None)[1]
+
+
+def joint(messages: Messages, array: str, wanted: str | None) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Which sensor_msgs/JointState tell of the joint `wanted`, and its numbers in `array` in those.
+
+    `array` is position, velocity or effort; None wants the shaft. The names are looked up anew wherever other bytes
+    stand for them: drivers that share a topic send other joints, or the same in another order.
+    """
+    kept, values = np.ones(len(messages), bool), np.empty(len(messages))
+    block, names, after = b"", [""], NAMES
     for place, data in enumerate(messages.data):
-        if len(data) not in offsets:
-            offsets[len(data)] = position_offset(messages, data)
-        (values[place],) = struct.unpack_from(byte_order(data) + "d", data, offsets[len(data)])
-    return values
+        if not block or data[NAMES:after] != block:
+            names, after = joint_names(messages, data)
+            block = data[NAMES:after]
+        start, count = numbers_of_joints(messages, data, after, array)
+        index = shaft(messages.topic, names, count) if wanted is None else place_of(wanted, names)
+        if index is None:
+            kept[place] = False
+        elif index >= count:
+            raise IndexError(place)
+        else:
+            (values[place],) = struct.unpack_from(byte_order(data) + "d", data, start + 8 * index)
+    return kept, values[kept]
 
 
-def position_offset(messages: Messages, data: bytes) -> int:
-    """Where the shaft's position lies in one sensor_msgs/JointState."""
+def joint_names(messages: Messages, data: bytes) -> tuple[list[str], int]:
+    """The names in one sensor_msgs/JointState, and where they end."""
     length = struct.Struct(byte_order(data) + "I")
     names: list[str] = []
     try:
-        cursor = HEADER + 8
-        (size,) = length.unpack_from(data, cursor)
-        cursor = aligned(cursor + 4 + size, 4)
+        (size,) = length.unpack_from(data, NAMES)
+        cursor = aligned(NAMES + 4 + size, 4)
         (joints,) = length.unpack_from(data, cursor)
         cursor += 4
         for _ in range(joints):
@@ -86,22 +106,48 @@ def position_offset(messages: Messages, data: bytes) -> int:
             (size,) = length.unpack_from(data, cursor)
             names.append(data[cursor + 4 : cursor + 3 + size].decode())
             cursor += 4 + size
-        cursor = aligned(cursor, 4)
-        (positions,) = length.unpack_from(data, cursor)
     except (struct.error, UnicodeDecodeError) as error:
-        raise InputError(f"{messages.topic}: a message is not a {JOINT_STATE} ({error}). Record again.") from error
-    return aligned(cursor + 4, 8) + 8 * joint(messages.topic, names, positions)
+        raise no_joint_state(messages, error) from error
+    return names, cursor
 
 
-def joint(topic: str, names: list[str], positions: int) -> int:
-    """Which of the joints is the shaft: the only one, or the one with its name."""
-    if positions == 1:
+def numbers_of_joints(messages: Messages, data: bytes, after: int, array: str) -> tuple[int, int]:
+    """Where the numbers of `array` begin in one sensor_msgs/JointState whose names end at `after`, and how many."""
+    cursor = after
+    try:
+        for name in ARRAYS:
+            cursor = aligned(cursor, 4)
+            (count,) = struct.unpack_from(byte_order(data) + "I", data, cursor)
+            start = aligned(cursor + 4, 8) if count else cursor + 4
+            cursor = start + 8 * count
+            if name == array:
+                break
+    except struct.error as error:
+        raise no_joint_state(messages, error) from error
+    if cursor > len(data):
+        raise no_joint_state(messages, f"{count} numbers in {len(data)} bytes")
+    return start, count
+
+
+def no_joint_state(messages: Messages, reason: object) -> InputError:
+    """What to say of a message that is none."""
+    return InputError(f"{messages.topic}: a message is not a {JOINT_STATE} ({reason}). Record again.")
+
+
+def place_of(wanted: str, names: list[str]) -> int | None:
+    """Where a joint stands among the names, if it does."""
+    return names.index(wanted) if wanted in names else None
+
+
+def shaft(topic: str, names: list[str], count: int) -> int:
+    """Which of `count` joints is the shaft: the only one, or the one with its name."""
+    if count == 1:
         return 0
-    if SHAFT in names[:positions]:
+    if SHAFT in names[:count]:
         return names.index(SHAFT)
     raise InputError(
-        f"{topic} has {positions} positions (joints: {', '.join(names) or 'unnamed'}), expected one joint,"
-        f" or one named {SHAFT}. Record the shaft's joint alone."
+        f"{topic} has {count} positions (joints: {', '.join(names) or 'unnamed'}), expected one joint,"
+        f" or one named {SHAFT}. Choose with a signal map, position: {{topic: {topic}, field: 'position[NAME]'}}."
     )
 
 

@@ -15,6 +15,7 @@ from pierburg_ros.recording.formats.messages import Wanted
 
 MOST_CELLS = 1 << 25
 """Cells kept at most, 256 MiB: six hours of three columns at 500 Hz. The recording made of them takes five times it."""
+TRUTH = {"true": 1.0, "false": 0.0}
 NOTHING = float("nan")
 """Stands for an empty cell, which leaves a signal as it was."""
 
@@ -37,6 +38,7 @@ def header_of(name: str, table: Iterator[tuple[int, list[str]]], delimiter: str)
     if not first:
         raise InputError(f"{name} is empty, expected a header and rows. Record again.")
     header = [cell.strip() for cell in first]
+    header[0] = header[0].removeprefix("#").lstrip()  # as NumPy writes it
     if any(is_number(cell) for cell in header):
         raise InputError(
             f"{name} has no header (its first row is {delimiter.join(first)[:60]}), {FORM}."
@@ -49,6 +51,7 @@ def filled(name: str, header: list[str], table: Iterator[tuple[int, list[str]]],
     """The wanted columns, filled from the rows that are left."""
     kept = {column: place for place, column in enumerate(header) if wanted(column)}
     columns = Columns(name, tuple(header), {column: array("d") for column in kept}, {})
+    marks: dict[str, tuple[int, str]] = {}
     cells = 0
     for line, row in table:
         if len(row) != len(header):
@@ -59,23 +62,45 @@ def filled(name: str, header: list[str], table: Iterator[tuple[int, list[str]]],
         if cells > MOST_CELLS:
             raise InputError(f"{name} has more than {MOST_CELLS:,} numbers, expected fewer. Cut it into parts.")
         for column, place in kept.items():
-            columns.cells[column].append(number(columns, column, line, row[place].strip()))
+            columns.cells[column].append(number(columns, marks, column, line, row[place].strip()))
     if not cells:
         raise InputError(f"{name} holds no samples, only a header. Record again.")
+    if len(marks) > 1:
+        (first, point), (other, comma) = marks["."], marks[","]
+        raise InputError(
+            f"{name} has {point!r} in row {first} and {comma!r} in row {other}, expected one mark before the decimals."
+            " Write all numbers with a point, and none with a mark between thousands."
+        )
     return columns
 
 
-def number(columns: Columns, column: str, line: int, cell: str) -> float:
-    """A cell as a number; the first of a column that is none is noted."""
+def number(columns: Columns, marks: dict[str, tuple[int, str]], column: str, line: int, cell: str) -> float:
+    """A cell as a number; the first of a column that is none is noted, and the first with each decimal mark."""
     if not cell:
         return NOTHING
     try:
         value = float(cell)
+        if "." in cell:
+            marks.setdefault(".", (line, cell[:60]))
     except ValueError:
-        value = NOTHING
+        value = decimal_comma(cell)
+        if "," in cell and value == value:
+            marks.setdefault(",", (line, cell[:60]))
     if value != value or abs(value) == float("inf"):
         columns.wrong.setdefault(column, (line, cell[:60]))
     return value
+
+
+def decimal_comma(cell: str) -> float:
+    """A cell with a comma before its decimals, or a truth value; NOTHING where it is neither."""
+    if cell.lower() in TRUTH:
+        return TRUTH[cell.lower()]
+    if cell.count(",") != 1 or "." in cell:
+        return NOTHING
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return NOTHING
 
 
 def is_number(cell: str) -> bool:

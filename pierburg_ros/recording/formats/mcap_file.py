@@ -14,6 +14,7 @@ from mcap.writer import MCAP0_MAGIC
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import opened
 from pierburg_ros.recording.formats.compression import MOST_UNPACKED, Damaged, most_unpacked, unpacked
+from pierburg_ros.recording.formats.definitions import UNDEFINED, Definition
 from pierburg_ros.recording.formats.format import Format, as_bag
 from pierburg_ros.recording.formats.messages import Bag
 
@@ -57,7 +58,7 @@ class McapRecords:
         self.size = size
         self.records = size + SLACK
         self.unpacked = most_unpacked(size)
-        self.schemas: dict[int, str] = {}
+        self.schemas: dict[int, tuple[str, Definition]] = {}
         self.topics: dict[int, str | None] = {}
 
     def take(self, file: BinaryIO) -> None:
@@ -132,7 +133,7 @@ class McapRecords:
         if opcode == Opcode.MESSAGE:
             self.message(content)
         elif opcode == Opcode.SCHEMA:
-            self.schemas[struct.unpack_from("<H", content)[0]] = text(content, 2)[0]
+            self.schema(content)
         elif opcode == Opcode.CHANNEL:
             self.channel(content)
 
@@ -147,21 +148,29 @@ class McapRecords:
         else:
             self.bag.add(topic, log_time, publish_time, sequence, content[MESSAGE.size :])
 
+    def schema(self, content: bytes) -> None:
+        """Note a message type and its definition."""
+        name, start = text(content, 2)
+        language, start = text(content, start)
+        definition = text(content, start, "replace")[0]
+        self.schemas[struct.unpack_from("<H", content)[0]] = name, Definition(language, definition)
+
     def channel(self, content: bytes) -> None:
         """Note a channel; its messages are kept if its topic is wanted."""
         channel, schema = DECLARED.unpack_from(content)
         topic, start = text(content, DECLARED.size)
         encoding, _ = text(content, start)
-        self.topics[channel] = self.bag.declare(topic, self.schemas.get(schema, "of no known type"), encoding)
+        name, definition = self.schemas.get(schema, ("of no known type", UNDEFINED))
+        self.topics[channel] = self.bag.declare(topic, name, encoding, definition)
 
 
-def text(content: bytes, start: int) -> tuple[str, int]:
-    """The text at `start`, with its length before it, and where it ends."""
+def text(content: bytes, start: int, errors: str = "strict") -> tuple[str, int]:
+    """The text at `start`, with its length before it, and where it ends; `errors` as Python decodes."""
     (length,) = struct.unpack_from("<I", content, start)
     end = start + 4 + length
     if end > len(content):
         raise Damaged(f"a text of {length} bytes in a record of {len(content)}")
-    return content[start + 4 : end].decode(), end
+    return content[start + 4 : end].decode(errors=errors), end
 
 
 FORMAT = Format(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError, printable
+from pierburg_ros.recording.formats.definitions import UNDEFINED, Definition
 
 Integers = NDArray[np.int64]
 Wanted = Callable[[str], bool]
@@ -21,6 +22,9 @@ OVERHEAD = 80
 MOST_KEPT = 1 << 30
 """Bytes of messages kept at most, half of the 2 GiB that a command may take; the arrays made of them have the rest.
 It is 3 h at 1 kHz of all the topics that are read."""
+LONGEST = 1 << 16
+"""Bytes of a message that is kept: no larger one, as a picture or a cloud of points, holds a signal of an actuator. Of
+those the times are kept."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class Messages:
     """The messages of one topic in the order of the file; the arrays have shape (messages,).
 
     `log_time` and `publish_time` [ns] are 0 throughout where the file has none, `place` counts the messages
-    of all topics, `data` is CDR.
+    of all topics, `data` is CDR, empty where a message is too long to be kept.
     """
 
     topic: str
@@ -38,9 +42,25 @@ class Messages:
     sequence: Integers
     place: Integers
     data: list[bytes]
+    definition: Definition = UNDEFINED
+    encoding: str = "cdr"
 
     def __len__(self) -> int:
         return len(self.data)
+
+    def select(self, kept: NDArray[np.bool_]) -> Messages:
+        """Some of the messages; their numbers, which then say nothing of losses, are 0."""
+        if np.all(kept):
+            return self
+        data = [self.data[place] for place in np.flatnonzero(kept)]
+        return replace(
+            self,
+            log_time=self.log_time[kept],
+            publish_time=self.publish_time[kept],
+            sequence=np.zeros(len(data), np.int64),
+            place=self.place[kept],
+            data=data,
+        )
 
 
 @dataclass
@@ -55,18 +75,20 @@ class Bag:
     unpack: Callable[[bytes], bytes] = bytes
     types: dict[str, str] = field(default_factory=dict)
     encodings: dict[str, str] = field(default_factory=dict)
+    definitions: dict[str, Definition] = field(default_factory=dict)
     count: int = 0
     weight: int = 0
     headers: dict[str, array[int]] = field(default_factory=dict)
     data: dict[str, list[bytes]] = field(default_factory=dict)
 
-    def declare(self, topic: str, type_name: str, encoding: str) -> str | None:
+    def declare(self, topic: str, type_name: str, encoding: str, definition: Definition = UNDEFINED) -> str | None:
         """Note that `topic` exists; its name if its messages are wanted."""
         topic, type_name = printable(topic), printable(type_name)
         self.types.setdefault(topic, type_name)
         self.headers.setdefault(topic, array("q"))
         self.data.setdefault(topic, [])
         self.encodings.setdefault(topic, encoding)
+        self.definitions.setdefault(topic, definition)
         return topic if self.wanted(topic) else None
 
     def add(self, topic: str, log_time: int, publish_time: int, sequence: int, data: bytes) -> None:
@@ -77,6 +99,7 @@ class Bag:
                 " a negative one, expected a time before the year 2262. Cut or repair the recording there."
             )
         data = self.unpack(data)
+        data = data if len(data) <= LONGEST else b""
         self.weight += len(data) + OVERHEAD
         if self.weight > MOST_KEPT:
             raise InputError(
@@ -91,4 +114,14 @@ class Bag:
         """Everything collected of `topic`."""
         log_time, publish_time, sequence, place = np.array(self.headers[topic], np.int64).reshape(-1, 4).T
         data = self.data[topic]
-        return Messages(topic, self.types[topic], log_time, publish_time, sequence, place, data)
+        return Messages(
+            topic,
+            self.types[topic],
+            log_time,
+            publish_time,
+            sequence,
+            place,
+            data,
+            self.definitions[topic],
+            self.encodings[topic],
+        )

@@ -75,6 +75,16 @@ def listed_in(folder: Path) -> Listed:
         present = sorted(folder.glob("*.mcap"))
         if len(present) == 1:
             return Listed(present, "")
+        if present:
+            raise InputError(
+                f"{folder.name} is a folder without metadata.yaml and with {len(present)} MCAP files, expected a"
+                " rosbag2 directory. Restore it with 'ros2 bag reindex', or name one of its files."
+            )
+        if any(folder.glob("*.csv")):
+            raise InputError(
+                f"{folder.name} is a folder of tables, expected a signal map that says which file each signal is in."
+                f" pierburg inspect {folder.name} --write-signals FILE writes one to edit."
+            )
         raise InputError(
             f"{folder.name} is a folder without metadata.yaml ({len(present)} MCAP files), expected a rosbag2"
             " directory. Name one of its files."

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake import opened
+from pierburg_ros.recording.formats.definitions import UNDEFINED, Definition
 from pierburg_ros.recording.formats.format import Format, as_bag
 from pierburg_ros.recording.formats.messages import Bag
 
@@ -18,6 +19,10 @@ NEEDED = {
     "messages": {"topic_id", "timestamp", "data"},
 }
 """Columns of the two tables that are read."""
+DEFINITIONS = {"topic_type", "encoding", "encoded_message_definition"}
+"""Columns of the table of definitions, which ROS 2 Iron and later write."""
+MOST_DEFINITIONS = 10_000
+"""Types of a file at most; all packages of ROS together have some 1,000."""
 LENGTH_LIMIT = 0
 """SQLITE_LIMIT_LENGTH, the largest text or bytes that a value may have."""
 LEAST_ROW = 8
@@ -77,12 +82,28 @@ def check_table(database: sqlite3.Connection, name: str, table: str, columns: se
 def declared(database: sqlite3.Connection, bag: Bag) -> dict[int, str]:
     """The wanted topics by their number."""
     topics: dict[int, str] = {}
+    definitions = defined(database)
     for number, topic, kind, encoding in database.execute("SELECT id, name, type, serialization_format FROM topics"):
         if not (isinstance(number, int) and all(isinstance(each, str) for each in (topic, kind, encoding))):
             raise InputError(f"{bag.name} has a topic without number, name, type or encoding. Record again.")
-        if (name := bag.declare(topic, kind, encoding)) is not None:
+        if (name := bag.declare(topic, kind, encoding, definitions.get(kind, UNDEFINED))) is not None:
             topics[number] = name
     return topics
+
+
+def defined(database: sqlite3.Connection) -> dict[str, Definition]:
+    """The definitions of message types by name, where the file has them."""
+    kind = database.execute("SELECT type FROM sqlite_master WHERE name = 'message_definitions' AND rootpage > 0")
+    found = {row[1] for row in database.execute("PRAGMA table_xinfo(message_definitions)") if row[6] == 0}
+    if kind.fetchall() != [("table",)] or not found >= DEFINITIONS:
+        return {}
+    query = "SELECT encoded_message_definition, encoding, topic_type FROM message_definitions LIMIT ?"
+    rows = database.execute(query, (MOST_DEFINITIONS,))
+    return {
+        name: Definition(language, text)
+        for text, language, name in rows
+        if all(isinstance(each, str) for each in (text, language, name))
+    }
 
 
 FORMAT = Format(

@@ -7,6 +7,8 @@ from support.recordings import NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.evidence.missing_torque import MissingTorque, missing_torque, rhythms, spans
 
 RANDOM = np.random.default_rng(3)
+OWN = NOMINAL.scales
+"""What is missing is given in multiples of these."""
 
 
 def lacking(changes: dict[str, float], duration: float = 24.0) -> MissingTorque:
@@ -18,15 +20,15 @@ def lacking(changes: dict[str, float], duration: float = 24.0) -> MissingTorque:
 def test_a_load_is_seen_at_its_size_and_with_its_sign() -> None:
     """A larger preload closes the valve: positive, as every load torque."""
     missing = lacking({"spring_preload": 0.32})
-    assert np.median(missing.torque) == pytest.approx(0.03, abs=0.003)
-    assert abs(np.median(lacking({}).torque)) < 0.003
+    assert OWN.torque * np.median(missing.torque) == pytest.approx(0.03, abs=0.003)
+    assert OWN.torque * abs(np.median(lacking({}).torque)) < 0.003
 
 
 def test_only_what_moves_is_looked_at_and_its_angle_is_that_of_the_shaft() -> None:
     missing = lacking({})
-    assert np.min(np.abs(missing.velocity)) > 0.1
-    assert np.min(missing.angle) == pytest.approx(0.0, abs=0.1)
-    assert np.max(missing.angle) == pytest.approx(np.pi / 2, abs=0.1)
+    assert np.min(np.abs(missing.velocity)) * OWN.angle / OWN.time > 0.09
+    assert np.min(missing.angle) == pytest.approx(0.0, abs=0.06)
+    assert np.max(missing.angle) == pytest.approx(1.0, abs=0.06)
 
 
 @pytest.mark.parametrize("centre", [0.4, 0.8, 1.2])
@@ -37,24 +39,24 @@ def test_a_tight_spot_is_found_at_its_angle(centre: float) -> None:
         "position_dependent_friction.center": centre,
         "position_dependent_friction.width": 0.08,
     }
-    assert lacking(tight).tight_spots(1) == [pytest.approx(centre, abs=0.08)]
+    assert OWN.angle * lacking(tight).tight_spots(1)[0] == pytest.approx(centre, abs=0.08)
 
 
 def test_a_load_for_a_while_is_found_in_its_time() -> None:
     load = {"external_load.torque": 0.08, "external_load.start": 9.0, "external_load.end": 14.0}
     start, end, torque = lacking(load).spans(1)[0]
-    assert (start, end) == (pytest.approx(9.0, abs=0.6), pytest.approx(14.0, abs=0.6))
+    assert (OWN.time * start, OWN.time * end) == (pytest.approx(9.0, abs=0.6), pytest.approx(14.0, abs=0.6))
     # Torques far from the median are clipped, so that a slip does not pass for a load: its sign is what remains.
     assert torque > 0.0
 
 
 def test_a_load_that_goes_on_has_no_end() -> None:
-    """More after 40 s, or less before: the one is as likely as the other."""
-    time = np.arange(0.0, 60.0, 0.02)
-    torque = np.where(time > 40.0, 0.05, 0.0) + 0.01 * RANDOM.standard_normal(time.size)
-    before, after = sorted(spans(time, torque, 60.0, 2))
-    assert before == (0.0, pytest.approx(40.0, abs=0.5), pytest.approx(-0.05, rel=0.1))
-    assert after == (pytest.approx(40.0, abs=0.5), 0.0, pytest.approx(0.05, rel=0.1))
+    """More after 400 of the actuator's own times, or less before: the one is as likely as the other."""
+    time = np.arange(0.0, 600.0, 0.2)
+    torque = np.where(time > 400.0, 0.05, 0.0) + 0.01 * RANDOM.standard_normal(time.size)
+    before, after = sorted(spans(time, torque, 600.0, 2))
+    assert before == (0.0, pytest.approx(400.0, abs=5.0), pytest.approx(-0.05, rel=0.1))
+    assert after == (pytest.approx(400.0, abs=5.0), 0.0, pytest.approx(0.05, rel=0.1))
 
 
 def test_rhythms_are_found_at_uneven_places_strongest_first() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.motions import CORNERS, NOISE, run_along
-from support.recordings import PIERBURG, data_on, recording
+from support.recordings import NOMINAL, PIERBURG, data_on, recording
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.evidence.quality import data_quality, limits_of, refuse_unusable
@@ -73,9 +73,9 @@ def test_an_actuator_without_stops_lacks_none():
 
 
 def test_refuses_what_is_too_short_to_judge():
-    refuse_unusable([recording({}, duration=3.0)])
+    refuse_unusable([recording({}, duration=3.0)], NOMINAL.scales)
     with pytest.raises(InputError, match=r"too short \(600 samples over 1.20 s\); expected at least 200 samples"):
-        refuse_unusable([recording({}, duration=1.2)])
+        refuse_unusable([recording({}, duration=1.2)], NOMINAL.scales)
 
 
 @pytest.mark.parametrize(("begin", "moves"), [(0.0, False), (0.64, False), (2.42, True), (3.04, True)])

@@ -43,6 +43,16 @@ def test_reads_position_and_semicolons_and_named_columns(tmp_path):
     assert recording.unit == "rad" and recording.measured.tolist() == [0.0, 0.2]
 
 
+def test_reads_a_header_as_numpy_writes_it(tmp_path):
+    np.savetxt(tmp_path / "run.csv", [[0, 0.1, 1], [1, 0.1, 2]], delimiter=",", header="time,duty,position")
+    assert read_recording(tmp_path / "run.csv").measured.tolist() == [1.0, 2.0]
+
+
+def test_reads_truth_values(tmp_path):
+    path = write(tmp_path, "time,duty,position,enabled\n0,0,0,True\n1,0,1,false\n")
+    assert read_recording(path).enabled.values.tolist() == [1.0, 0.0]
+
+
 def test_no_header(tmp_path):
     assert refusal(write(tmp_path, "0.0,0.1,0.42\n0.1,0.1,0.5\n")) == (
         "run.csv has no header (its first row is 0.0,0.1,0.42), expected time, duty, and hall_voltage or"

@@ -1,0 +1,1 @@
+"""How strong an effect that is not named may be without contradicting the recordings."""

@@ -1,0 +1,43 @@
+"""How far a model may be trusted ahead: its error some time after it has been set to the measured state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from pierburg_ros.diagnosis.evidence.stretches import restarted
+from pierburg_ros.diagnosis.schema import Horizon
+from pierburg_ros.estimation.data import Data, rms
+from pierburg_ros.estimation.run import Switch
+from pierburg_ros.plant import Model
+
+HORIZONS = (0.1, 0.3, 1.0, 3.0)
+"""Times after the start from the measured state [s]. Given: what the report promises."""
+LAST = 0.2
+"""Share of a stretch, at its end, over which the error after it is taken. Chosen: it averages the noise; not varied."""
+
+Simulated = tuple[Model, Switch | None]
+
+
+def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
+    """RMSE of the nominal, the recalibrated and the final model after each of `HORIZONS`, and over whole runs.
+
+    On all samples: those that test are too few to stand at the end of the longer stretches. What a model remembers
+    (heat, play) starts afresh with each stretch.
+    """
+    found = []
+    for after in (*HORIZONS, math.inf):
+        stretches = restarted(data, after) if math.isfinite(after) else data
+        late = [
+            run.time - run.time[0] > (1.0 - LAST) * after if math.isfinite(after) else np.ones(run.time.size, bool)
+            for run in stretches.runs
+        ]
+        samples = np.concatenate(late)
+        errors = [
+            rms(stretches.residual(*model)[samples]) * data.noise if samples.any() else math.nan for model in models
+        ]
+        nominal, recalibrated, final = errors
+        found.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))
+    return found

@@ -1,0 +1,52 @@
+"""Limits hold: an effect as strong as a limit is not excluded, one several times as strong is."""
+
+from dataclasses import replace
+
+import pytest
+from support.fits import found_among
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.limits.limits import Limit, limits
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.workers import workers
+
+LUMPS = Explanation(("armature_resistance", "spring_preload", "coulomb_friction"))
+SOME = {"input_delay", "pwm_deadband", "gear_compliance"}
+
+
+def limits_on(changes: dict[str, float], seed: int) -> dict[str, Limit]:
+    """Limits of `SOME` effects where nothing is named on a recording of the valve with `changes`."""
+    data = data_on(recording(changes, duration=12.0, seed=seed))
+    estimator = Estimator(data, NOMINAL)
+    nominal = estimator.at(Explanation())
+    found: Found = replace(found_among(data, nominal), recalibrated=estimator.fit(LUMPS))
+    with workers(1) as pool:
+        return {limit.effect: limit for limit in limits(found, nominal, pool) if limit.effect in SOME}
+
+
+@pytest.fixture(scope="module")
+def clean() -> dict[str, Limit]:
+    return limits_on({}, seed=3)
+
+
+def test_every_effect_that_shows_gets_a_limit_within_its_range(clean):
+    assert set(clean) == SOME
+    for effect, limit in clean.items():
+        declared = EFFECT[effect].parameter(limit.parameter)
+        assert declared.minimum < limit.value < declared.maximum
+    assert clean["gear_compliance"].above and not clean["input_delay"].above
+
+
+def test_a_clean_recording_excludes_less_than_what_is_plausible(clean):
+    assert clean["input_delay"].value < EFFECT["input_delay"].parameter("delay").plausible[0]
+    assert clean["gear_compliance"].value > EFFECT["gear_compliance"].parameter("stiffness").plausible[1]
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_what_acts_as_strongly_as_a_limit_is_not_excluded(clean, seed):
+    delay, width = clean["input_delay"].value, clean["pwm_deadband"].value
+    assert limits_on({"input_delay.delay": delay}, seed)["input_delay"].value > delay
+    assert limits_on({"pwm_deadband.width": width}, seed)["pwm_deadband"].value > width

@@ -1,0 +1,69 @@
+"""The discrepancy in the likelihood: white noise stays as it is, what wanders is found and whitened."""
+
+import numpy as np
+import pytest
+from support.recordings import data_on, recording
+
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence, way
+from pierburg_ros.estimation.likelihood import repetition
+
+
+@pytest.fixture(scope="module")
+def data() -> Data:
+    return data_on(recording({}, duration=24.0))
+
+
+@pytest.fixture(scope="module")
+def kalman(data: Data) -> Kalman:
+    return Kalman(data, data.train)
+
+
+def wandering(kalman: Kalman, size: float, memory: float, reach: float, seed: int = 1) -> np.ndarray:
+    """White noise of 1 beside an Ornstein-Uhlenbeck process, drawn step by step."""
+    random = np.random.default_rng(seed)
+    keep = np.exp(-kalman.steps / memory - kalman.way / reach)
+    state, values = 0.0, np.empty(keep.size)
+    for k, share in enumerate(keep):
+        state = share * state + size * np.sqrt(1.0 - share**2) * random.standard_normal()
+        values[k] = state
+    return values + random.standard_normal(keep.size)
+
+
+def test_without_size_a_residual_stays_as_it_is(kalman):
+    residual = np.random.default_rng(0).standard_normal(kalman.seen.size)
+    filtered = kalman.filtered(Discrepancy(0.0, 1.0, 100.0))
+    np.testing.assert_array_equal(filtered(residual), residual[kalman.seen])
+    assert filtered.log_spread == 0.0
+
+
+def test_what_wanders_is_whitened(kalman):
+    residual = wandering(kalman, 8.0, 3.0, 2000.0)
+    innovations = kalman.filtered(Discrepancy(8.0, 3.0, 2000.0))(residual)
+    assert np.std(innovations) == pytest.approx(1.0, abs=0.03)
+    assert repetition(residual[kalman.seen]) > 50.0 and repetition(innovations) < 1.1
+
+
+def test_the_likelihood_is_that_of_the_joint_normal_distribution(kalman, data):
+    """Against the covariance matrix of the first samples, factored as a whole."""
+    first, (size, memory, reach) = 60, (3.0, 0.2, 500.0)
+    clock = np.cumsum(np.append(0.0, (kalman.steps / memory + kalman.way / reach)[1:first]))
+    covariance = size**2 * np.exp(-np.abs(clock[:, None] - clock)) + np.eye(first)
+    residual = np.zeros(kalman.seen.size)
+    residual[:first] = np.random.default_rng(2).standard_normal(first)
+    few = Kalman(data, np.arange(kalman.seen.size) < first)
+    expected = residual[:first] @ np.linalg.solve(covariance, residual[:first]) + np.linalg.slogdet(covariance)[1]
+    assert evidence(few.filtered(Discrepancy(size, memory, reach)), residual) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_most_likely_one_is_no_less_likely_than_the_true_one(kalman):
+    true = Discrepancy(8.0, 3.0, 2000.0)
+    residual = wandering(kalman, true.size, true.memory, true.reach)
+    found = kalman.most_likely(residual)
+    assert evidence(kalman.filtered(found), residual) <= evidence(kalman.filtered(true), residual) + 0.5
+
+
+def test_the_way_is_that_of_the_movement_and_not_of_the_noise():
+    random = np.random.default_rng(3)
+    ramp = np.concatenate([np.zeros(2000), np.arange(1000.0), np.full(2000, 999.0)])
+    assert way(ramp + random.standard_normal(ramp.size)).sum() == pytest.approx(999.0, rel=0.1)
