@@ -56,7 +56,6 @@ colcon: $(COLCON)/.installed
 
 # Writes docs/benchmarks.md, in about 25 minutes on an otherwise idle machine.
 benchmarks: $(STAMP)
-	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,benchmarks]'
 	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fuzzy.py
 	$(BIN)/python benchmarks/least_squares.py

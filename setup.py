@@ -7,7 +7,19 @@ from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
 NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
-COMMANDS = ("demo", "simulate", "experiment", "identify", "replay", "diagnose", "inspect", "recover", "prove", "tune")
+COMMANDS = (
+    "demo",
+    "simulate",
+    "experiment",
+    "identify",
+    "replay",
+    "diagnose",
+    "inspect",
+    "export",
+    "recover",
+    "prove",
+    "tune",
+)
 # colcon and the build farm of ROS call `setup.py install` or `develop`, which put executables into lib/pierburg_ros
 # (setup.cfg), where `ros2 run pierburg_ros NAME` finds them. pip never does: with it they would crowd the path.
 FOR_ROS_RUN = (
@@ -29,7 +41,9 @@ ROS_WHEELS = [
     "ros-jazzy-builtin-interfaces",
     "ros-jazzy-lifecycle-msgs",
 ]
+MUJOCO = ["mujoco>=3.13; python_version >= '3.11'"]
 TEST_TOOLS = [
+    *MUJOCO,
     "pytest",
     "pytest-rerunfailures",
     "pytest-xdist",
@@ -92,7 +106,7 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "benchmarks": ["mujoco"]},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

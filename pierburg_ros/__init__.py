@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pierburg_ros.errors import InputError
     from pierburg_ros.library.comparing import Comparison, compare
     from pierburg_ros.library.diagnosing import Diagnosis, diagnose
+    from pierburg_ros.library.exporting import Export, export
     from pierburg_ros.library.identifying import Identification, identify
     from pierburg_ros.library.model import Model
     from pierburg_ros.library.reading import read
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Comparison",
     "Diagnosis",
+    "Export",
     "Identification",
     "InputError",
     "Model",
@@ -35,6 +37,7 @@ __all__ = [
     "Simulation",
     "compare",
     "diagnose",
+    "export",
     "identify",
     "read",
     "simulate",
@@ -43,6 +46,7 @@ __all__ = [
 _HOME = {
     "Comparison": "library.comparing",
     "Diagnosis": "library.diagnosing",
+    "Export": "library.exporting",
     "Identification": "library.identifying",
     "InputError": "errors",
     "Model": "library.model",
@@ -50,6 +54,7 @@ _HOME = {
     "Simulation": "library.simulation",
     "compare": "library.comparing",
     "diagnose": "library.diagnosing",
+    "export": "library.exporting",
     "identify": "library.identifying",
     "read": "library.reading",
     "simulate": "library.simulation",

@@ -6,8 +6,9 @@ its own threads would fight with ours for the same cores.
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from queue import SimpleQueue
@@ -16,6 +17,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from threadpoolctl import threadpool_limits
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.errors import InputError
 
 Arguments = ParamSpec("Arguments")
@@ -31,16 +33,17 @@ def cores() -> int:
 
 
 @contextmanager
-def workers(jobs: int | None = None) -> Iterator[Executor]:
+def workers(jobs: int | None = None, deadline: Deadline | None = None) -> Iterator[Executor]:
     """Threads for `jobs` pieces of work at a time; None: one for each core.
 
         with workers(jobs) as pool:
             fits = list(pool.map(fit, starts))
 
     `map` gives results in the order of its items and raises what a piece of work raised; nothing that waited is
-    begun then. Work that runs in the pool must not wait for other work of the same pool.
+    begun then. Work that runs in the pool must not wait for other work of the same pool. After the `deadline` what
+    waits for a result gets OutOfTime.
     """
-    pool = _Threads(checked_jobs(jobs))
+    pool = _Threads(checked_jobs(jobs), deadline or Deadline())
     try:
         with threadpool_limits(1):
             yield pool
@@ -64,13 +67,33 @@ class _Threads(Executor):
     Those of `concurrent.futures` keep an interrupted command waiting until the last of them has finished.
     """
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, deadline: Deadline) -> None:
+        self._deadline = deadline
         self._tasks: SimpleQueue[tuple[Future[Any], Task] | None] = SimpleQueue()
         self._waiting: set[Future[Any]] = set()
         self._closed = False
         self._threads = [Thread(target=self._work, daemon=True, name=f"worker-{n}") for n in range(jobs)]
         for thread in self._threads:
             thread.start()
+
+    def map(
+        self,
+        fn: Callable[..., Result],
+        *iterables: Iterable[Any],
+        timeout: float | None = None,
+        chunksize: int = 1,
+    ) -> Iterator[Result]:
+        """Results in the order of the items; OutOfTime where the deadline comes first."""
+        left = self._deadline.left
+        limit = timeout if math.isinf(left) else left if timeout is None else min(left, timeout)
+        return self._in_time(super().map(fn, *iterables, timeout=limit, chunksize=chunksize))
+
+    def _in_time(self, results: Iterator[Result]) -> Iterator[Result]:
+        try:
+            yield from results
+        except TimeoutError:
+            self._deadline.check()
+            raise
 
     def submit(
         self, function: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs

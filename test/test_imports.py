@@ -15,7 +15,8 @@ ALLOWED = {
     "kernel": {"kernel_cache"},
     "parameter": {"errors"},
     "processes": {"errors"},
-    "workers": {"errors"},
+    "deadline": set(),
+    "workers": {"errors", "deadline"},
     "intake": {"errors"},
     "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
@@ -24,16 +25,17 @@ ALLOWED = {
     "recording": {"errors", "kernel", "intake", "arrays"},
     "serial_line": {"errors"},
 }
+ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers", "pages"}
+ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers", "deadline", "pages"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
 ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "library", "recording"}

@@ -53,6 +53,9 @@ def check(actuator: Actuator, name: str, value: object) -> None:
 
 def check_together(actuator: Actuator, values: Mapping[str, float]) -> None:
     """Refuse values that cannot go together, or effects that cannot act in this actuator."""
+    for effect in EFFECTS:
+        if effect.acts(values) and (obstacle := actuator.obstacle(effect)):
+            raise InputError(f"{effect.id} cannot act in actuator {actuator.name}: {obstacle}. Leave it out.")
     for name, declared in PAIRS.items():
         value = values[name]
         if value == 0.0:
@@ -64,9 +67,6 @@ def check_together(actuator: Actuator, values: Mapping[str, float]) -> None:
             )
         if declared.below is not None and value >= values[declared.below]:
             raise InputError(f"{name} is {value:g}; expected less than {declared.below}, {values[declared.below]:g}.")
-    for effect in EFFECTS:
-        if effect.acts(values) and (obstacle := actuator.obstacle(effect)):
-            raise InputError(f"{effect.id} cannot act in actuator {actuator.name}: {obstacle}. Leave it out.")
     ends = [values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
     if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
         raise InputError(

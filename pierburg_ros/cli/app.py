@@ -21,6 +21,8 @@ import typer
 
 from pierburg_ros.errors import InputError, one_line
 
+SPREAD = ("--simulation",)
+"""Options that take every value up to the next option."""
 INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 SIGNALS = {INTERRUPTED: "interrupted", TERMINATED: "terminated"}
 """Exit statuses of a run that a signal has ended, as shells count them, and the line that says so."""
@@ -45,7 +47,8 @@ COMMANDS = {
     "identify": Command("Static characteristic, step response and parameters from recordings."),
     "replay": Command("Simulate a recorded duty and compare with what was measured."),
     "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
-    "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, and what each is read as."),
+    "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, what each could be."),
+    "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
     "recover": Command("Make a cut recording whole for every reader."),
     "prove": Command("Seeded blind trials of the diagnosis."),
     "tune": Command("PIFLC gains and sets for a stated goal over a set of plants."),
@@ -85,7 +88,7 @@ def options(version: Annotated[bool, VERSION] = False) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; what a person gave wrongly ends as one line on stderr and exit status 2."""
     show_log()
-    given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    given = spread(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     called = next((argument for argument in given if argument in COMMANDS), None)
     try:
         with terminable():
@@ -131,6 +134,20 @@ def terminable() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
+def spread(arguments: Sequence[str]) -> list[str]:
+    """The arguments with an option of `SPREAD` repeated before each of its values: --simulation a b is one of a and one
+    of b. Click has no option with several values."""
+    found: list[str] = []
+    option = ""
+    for argument in arguments:
+        if argument.startswith("-"):
+            option = next((name for name in SPREAD if argument.partition("=")[0] == name), "")
+        elif option and found[-1] != option:
+            found.append(option)
+        found.append(argument)
+    return found
+
+
 def show_log() -> None:
     """Show on stderr what the package logs, such as a wait for the compiler; it is silent as a library."""
     log = logging.getLogger("pierburg_ros")
@@ -161,6 +178,7 @@ identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
 inspect = standalone("inspect")
+export = standalone("export")
 recover = standalone("recover")
 prove = standalone("prove")
 tune = standalone("tune")

@@ -14,7 +14,8 @@ from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.library.diagnosing import Diagnosis
+from pierburg_ros.errors import InputError
+from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
 from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
@@ -25,31 +26,56 @@ from pierburg_ros.recording import Recording
 def diagnose(
     recordings: Annotated[list[Path], typer.Argument(help="MCAP, rosbag2 directories or CSV, of one actuator.")],
     output: Annotated[Path, typer.Option(help="Folder for the results.")],
+    simulation: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="SIM...",
+            help="Recordings of the same actuator made by your own simulator, which then stands for the model.",
+        ),
+    ] = None,
+    simulation_signals: Annotated[
+        Path | None, typer.Option(help="Signal map of your simulator's recordings, if not that of --signals.")
+    ] = None,
     actuator: ActuatorOption = None,
     model: ModelOption = None,
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
+    budget: Annotated[float, typer.Option(min=1.0, help="Seconds after which the best verdict yet is given.")] = (
+        USUAL_BUDGET
+    ),
+    thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder.
+    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
+    verdict yet.
     """
     nominal = chosen_or_valve(model, actuator)
-    measured = [
-        read(path, time=time, topics=topics_of(topic), signals=signals, actuator=nominal.actuator)
-        for path in recordings
-    ]
+    if simulation_signals and not simulation:
+        raise InputError("Found --simulation-signals without --simulation. Name the recordings of your simulator.")
+
+    def taken(paths: Sequence[Path], named: Path | None) -> list[Recording]:
+        topics = topics_of(topic)
+        return [read(each, time=time, topics=topics, signals=named, actuator=nominal.actuator) for each in paths]
+
+    measured, simulated = taken(recordings, signals), taken(simulation or (), simulation_signals or signals)
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated)
         diagnosis.write_into(folder)
     terminal().print(
         shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
     )
 
 
-def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model, jobs: int | None = None) -> Diagnosis:
+def diagnosed_with_progress(
+    recordings: Sequence[Recording],
+    nominal: Model,
+    jobs: int | None = None,
+    budget: float | None = USUAL_BUDGET,
+    simulation: Sequence[Recording] = (),
+) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
         task = bar.add_task("reading", total=None)
@@ -57,7 +83,9 @@ def diagnosed_with_progress(recordings: Sequence[Recording], nominal: Model, job
         def tell(tried: str) -> None:
             bar.update(task, advance=1, description=tried)
 
-        return diagnosis_of(recordings, model=nominal, progress=tell, jobs=jobs)
+        return diagnosis_of(
+            recordings, model=nominal, simulation=simulation or None, progress=tell, jobs=jobs, budget=budget
+        )
 
 
 def _progress() -> Progress:

@@ -71,6 +71,11 @@ def simulate_runs(
 
     Each starts anew, shaft and controller; see `simulate_loop`.
     """
+    if model.actuator.drive != "voltage":
+        raise InputError(
+            f"Actuator {model.actuator.name} is driven by a {model.actuator.input}; the controller gives a duty. "
+            "Choose one that is driven by a duty."
+        )
     if model.actuator.quantity != "hall_voltage":
         raise InputError(
             f"Actuator {model.actuator.name} measures {model.actuator.quantity}; the controller needs "

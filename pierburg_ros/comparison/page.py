@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.comparison.plot import figure
+from pierburg_ros.comparison.plot import drawn_input, figure
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.pages.page import Plot, command, written
 from pierburg_ros.pages.room import page_signals
@@ -26,7 +26,7 @@ def replay_page(
         "time": recording.time,
         "measured": recording.measured,
         "residual": comparison.residual,
-        "command": recording.command.at(recording.time, before=0.0),
+        "command": drawn_input(recording),
     }
     caption = f"{recording.name}: measured and simulated, residual and input over time"
     context = {

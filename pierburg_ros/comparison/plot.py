@@ -1,4 +1,4 @@
-"""Plots of a comparison: measured and simulated, residual, duty; to be zoomed and to be printed."""
+"""Plots of a comparison: measured and simulated, residual, input; to be zoomed and to be printed."""
 
 from __future__ import annotations
 
@@ -9,38 +9,40 @@ import plotly.graph_objects as go
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pierburg_ros.actuators.wording import drawn_factor, input_title, quantity_title
 from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.pages.over_time import Curve, Panel, Span, label, over_time
+from pierburg_ros.pages.over_time import Curve, Panel, Span, over_time
+from pierburg_ros.recording import Recording
 
-COLOURS = {"measured": "#7f7f7f", "simulated": "#d62728", "residual": "#1f77b4", "duty": "#2ca02c"}
+COLOURS = {"measured": "#7f7f7f", "simulated": "#d62728", "residual": "#1f77b4", "input": "#2ca02c"}
 
 
 def title(comparison: Comparison) -> str:
     """One line that says what is compared and how far apart it is."""
-    unit = comparison.recording.unit
+    unit = comparison.unit
     return (
         f"{comparison.recording.name} and {comparison.model.actuator.name}:"
         f" RMSE {comparison.rmse:.4g} {unit}, measurement noise {comparison.noise:.2g} {unit}"
     )
 
 
-def duty_percent(comparison: Comparison) -> np.ndarray:
-    """Duty [%] in force at each sample."""
-    return 100.0 * comparison.recording.command.at(comparison.recording.time, before=0.0)
+def drawn_input(recording: Recording) -> np.ndarray:
+    """The input in force at each sample, as it is drawn: a duty in per cent."""
+    return drawn_factor(recording.input) * recording.command.at(recording.time, before=0.0)
 
 
 def figure(comparison: Comparison) -> go.Figure:
     """Measured and simulated, residual, and input over time, as a Plotly figure; the worst stretch is shaded."""
     recording = comparison.recording
     measured, residual = ("0/measured", recording.measured), ("0/residual", comparison.residual)
-    command = "0/command", recording.command.at(recording.time, before=0.0)
+    command = "0/command", drawn_input(recording)
     signals = [
         Curve("measured", "measured", "measured", measured),
         Curve("simulated", "simulated", "simulated", measured, residual),
     ]
-    unit = recording.unit
+    unit = comparison.unit
     panels = [
-        Panel("measured and simulated", label(recording.quantity, unit), signals, 0.45),
+        Panel("measured and simulated", quantity_title(recording.quantity, unit), signals, 0.45),
         Panel(
             "residual; grey: noise",
             f"residual [{unit}]",
@@ -48,7 +50,12 @@ def figure(comparison: Comparison) -> go.Figure:
             0.33,
             1.96 * comparison.noise,
         ),
-        Panel("input", recording.input, [Curve("input", "input", "input", command, steps=True)], 0.22),
+        Panel(
+            "input",
+            input_title(recording.input, comparison.model.actuator.motion),
+            [Curve("input", "input", "input", command, steps=True)],
+            0.22,
+        ),
     ]
     spans = [Span(comparison.worst.start, comparison.worst.end)]
     spans += [Span(*span, missing=True) for span in recording.unknown_input]
@@ -61,7 +68,7 @@ def picture(comparison: Comparison) -> Figure:
     recording = comparison.recording
     drawn = Figure(figsize=(10, 6.5), layout="constrained")
     FigureCanvasAgg(drawn)
-    signal, residual, duty = drawn.subplots(3, sharex=True, height_ratios=[5, 3, 2])
+    signal, residual, driving = drawn.subplots(3, sharex=True, height_ratios=[5, 3, 2])
     signal.set_title(title(comparison), fontsize=10, parse_math=False)
     for name, values, style in (
         ("measured", recording.measured, "-"),
@@ -73,9 +80,9 @@ def picture(comparison: Comparison) -> Figure:
     worst = comparison.worst
     residual.axvspan(worst.start, worst.end, color="orange", alpha=0.2, label="worst stretch")
     residual.legend(loc="upper right", fontsize=8)
-    duty.step(recording.time, duty_percent(comparison), where="post", color=COLOURS["duty"], linewidth=0.8)
-    signal.set_ylabel(label(recording.quantity, recording.unit))
-    residual.set_ylabel(f"residual [{recording.unit}]")
-    duty.set_ylabel("duty [%]")
-    duty.set_xlabel("time [s]")
+    driving.step(recording.time, drawn_input(recording), where="post", color=COLOURS["input"], linewidth=0.8)
+    signal.set_ylabel(quantity_title(recording.quantity, comparison.unit))
+    residual.set_ylabel(f"residual [{comparison.unit}]")
+    driving.set_ylabel(input_title(recording.input, comparison.model.actuator.motion))
+    driving.set_xlabel("time [s]")
     return drawn

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
-from pierburg_ros.diagnosis.limits.limits import limits
-from pierburg_ros.diagnosis.remainder.remainder import remainder
+from pierburg_ros.diagnosis.limits.limits import Limit, limits
+from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
-from pierburg_ros.diagnosis.verdict.shares import shares
+from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
-from pierburg_ros.workers import workers
 
 
 def diagnose(
@@ -26,22 +27,34 @@ def diagnose(
     nominal: Model,
     progress: Progress = lambda _: None,
     jobs: int | None = None,
+    budget: float | None = None,
+    simulation: Sequence[Recording] = (),
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
-    `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core.
-    InputError where the recordings cannot be used.
+    `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
+    `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; without a budget it takes what it takes.
+    InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
+    model: `nominal` is then fitted to them first.
     """
+    simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
+    nominal = simulator.model if simulator else nominal
     data = evidence(recordings, nominal)
-    found = search(data, nominal, progress, jobs)
-    rest = remainder(found, progress, jobs) if verdict_on(found.chosen) == "unexplained" else None
+    data = simulator.kept_apart(data) if simulator else data
+    deadline = Deadline(budget)
+    found = search(data, nominal, progress, jobs, deadline=deadline)
+    rest = None
+    if verdict_on(found.chosen) == "unexplained":
+        rest = deadline.attempt(lambda: remainder(found, progress, jobs, deadline), unexamined(found))
     conclusion = conclude(found, rest)
-    parts = shares(found, conclusion.recalibrated, conclusion.final, conclusion.model)
-    with workers(jobs) as pool:
-        excluded = limits(found, conclusion.final, pool, progress)
-    written = document(found, conclusion, parts, excluded)
+    parts = deadline.attempt(
+        lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)
+    )
+    excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
+    written = document(found, conclusion, parts, excluded, deadline.stopped)
     shown = signals(longest(data), conclusion)
-    return Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
+    result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
+    return simulator.told(result) if simulator else result
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

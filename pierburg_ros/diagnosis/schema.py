@@ -261,6 +261,30 @@ class DataQuality(Part):
     """What these recordings cannot tell for the way they were made, in words."""
 
 
+class Simulated(Part):
+    """A base parameter as the user's simulator has it."""
+
+    described: Number
+    """As the actuator is described, in `unit`."""
+    value: Number
+    """As fitted to the simulator's recordings, in `unit`: what the real ones are held against."""
+    unit: str
+
+
+class Simulation(Part):
+    """The user's own simulator, which stood for the nominal model."""
+
+    recordings: list[str]
+    """Names of its recordings."""
+    described_rmse: Number
+    """Error of the actuator as described on them, measured unit."""
+    rmse: Number
+    """What the fitted equations leave of them, without their own noise, measured unit: kept apart, no evidence."""
+    parameters: dict[str, Simulated]
+    effects: dict[str, dict[str, float]]
+    """What the equations need to reproduce it, and what the description always has; values in the catalogue's units."""
+
+
 class Diagnosis(Part):
     """The whole document."""
 
@@ -271,9 +295,15 @@ class Diagnosis(Part):
     quantity: Literal["hall_voltage", "position", "speed"]
     unit: str
     """Measured unit."""
+    input: Literal["duty", "current", "torque"] = "duty"
+    """What drives the actuator."""
+    motion: Literal["rotary", "linear"] = "rotary"
+    """Of a linear actuator every rad is a metre, and every N.m a newton."""
     verdict: Verdict
     summary: str
     """One paragraph that a technician can read."""
+    stopped: bool = False
+    """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
     effects: list[Effect] = []
     parameters: dict[str, BaseParameter] = {}
     changes: list[Change] = []
@@ -281,6 +311,8 @@ class Diagnosis(Part):
     """Of the first recording, ranked."""
     regimes: list[Regime] = []
     """Of the first recording."""
+    simulation: Simulation | None = None
+    """What the recordings were held against, where that is the user's own simulator."""
     fit: FitQuality
     candidates: list[Candidate] = []
     not_testable: list[NotTestable] = []

@@ -1,6 +1,6 @@
 """Inductance of the armature winding."""
 
-from pierburg_ros.effects.effect import PAPER, Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import PAPER, Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
@@ -9,8 +9,9 @@ EFFECT = Effect(
     sentence="The motor current follows the voltage a little late.",
     equation="inductance di/dt = u - R i - k_g k_m w",
     source=PAPER,
+    elsewhere=Elsewhere(modelica={"inductance": "{inductance}"}, quantities={"winding_inductance": "inductance"}),
     shows_in="fractions of a millisecond after each change of duty",
-    record="samples at 10 kHz or a current measurement",
+    record="samples at 10 kHz or more",
     parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.0127)),),
     strength=("inductance",),
     typical={"inductance": 0.002530387},

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, Parameter, Ripple, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -43,6 +43,14 @@ EFFECT = Effect(
     sentence="The motor snaps from pole to pole; the torque ripples along the travel.",
     equation="load torque amplitude sin(periods_per_motor_revolution gear_ratio angle + phase)",
     source="Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. (2003)",
+    elsewhere=Elsewhere(
+        modelica={"load": "{amplitude}*sin({periods_per_motor_revolution}*gear_ratio*angle + {phase})"},
+        quantities={
+            "ripple_torque": "amplitude",
+            "ripple_periods": "periods_per_motor_revolution",
+            "ripple_phase": "phase",
+        },
+    ),
     shows_in="a ripple along the angle, at low velocity",
     record="very slow ramps over the whole travel",
     parameters=(

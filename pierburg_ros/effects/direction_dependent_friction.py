@@ -1,6 +1,6 @@
 """Friction that differs between opening and closing."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,6 +10,12 @@ EFFECT = Effect(
     sentence="It runs easier one way than the other.",
     equation="viscous coefficient + viscous_difference and friction level + coulomb_difference when closing",
     source=ARMSTRONG,
+    elsewhere=Elsewhere(
+        modelica={
+            "friction_level": "(if velocity < 0 then {coulomb_difference} else 0)",
+            "damping": "(if velocity < 0 then {viscous_difference} else 0)",
+        }
+    ),
     shows_in="closing movements",
     record="slow and fast travel in both directions",
     parameters=(

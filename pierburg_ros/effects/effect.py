@@ -15,6 +15,42 @@ Load = Literal["spring", "pendulum", "none"]
 Sensor = Literal["hall_voltage", "position", "speed"]
 Memory = Literal["none", "brief", "lasting"]
 Start = Mapping[str, float]
+Quantity = Literal[
+    "command_delay",
+    "winding_inductance",
+    "winding_heat_resistance",
+    "winding_heat_capacity",
+    "ripple_torque",
+    "ripple_periods",
+    "ripple_phase",
+    "spring_cubic_stiffness",
+    "contact_stiffness",
+    "contact_damping",
+    "viscous_damping",
+    "breakaway_friction",
+    "stribeck_speed",
+    "bristle_stiffness",
+    "bristle_damping",
+]
+"""What other simulators have a number for, all at the shaft and in SI units."""
+Place = Literal[
+    "command",
+    "resistance",
+    "inductance",
+    "load",
+    "friction_level",
+    "damping",
+    "bristle_stiffness",
+    "bristle_damping",
+    "stop_stiffness",
+    "stop_damping",
+    "sensed",
+    "measured",
+    "variable",
+    "equation",
+]
+"""Places in the equations of the plant: `command`, `sensed` and `measured` are changed by effects, `variable` and
+`equation` are further ones, and to all others effects add."""
 
 DRIVES: tuple[Drive, ...] = ("voltage", "current", "torque")
 LOADS: tuple[Load, ...] = ("spring", "pendulum", "none")
@@ -125,6 +161,18 @@ class Ripple:
 
 
 @dataclass(frozen=True)
+class Elsewhere:
+    """How other simulators write an effect.
+
+    `quantities` are parameters by the name that other simulators know them by. `modelica` is what it adds to the
+    equations, by the place where: `{name}` stands for a parameter of it, `{input}` for what it changes.
+    """
+
+    quantities: Mapping[Quantity, str] = field(default_factory=dict)
+    modelica: Mapping[Place, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Effect:
     """One physical phenomenon; with every strength parameter at zero it is absent, bit for bit."""
 
@@ -149,6 +197,8 @@ class Effect:
     what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the 0.3 degree asked of a
     controller at standstill, which has nothing but this sensor and cannot correct them.
     """
+    elsewhere: Elsewhere = Elsewhere()
+    """How other simulators write it; by default they cannot."""
     variants: tuple[Variant, ...] = ()
     """In which ways a search looks for it; none: it is not searched for."""
     ripple: Ripple | None = None

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from pierburg_ros.effects.effect import QUADRATURE, Effect, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, Parameter, Ripple, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -35,6 +35,12 @@ EFFECT = Effect(
     sentence="Something pushes on the valve from outside, steadily or in pulses.",
     equation="load torque torque + amplitude sin(2 pi frequency t + phase) for start <= t < end",
     source="Wittenburg, Dynamics of Multibody Systems, 2nd ed. (2008)",
+    elsewhere=Elsewhere(
+        modelica={
+            "load": "(if time >= {start} and ({end} <= 0 or time < {end}) "
+            "then {torque} + {amplitude}*sin(2*pi*{frequency}*time + {phase}) else 0)"
+        }
+    ),
     shows_in="a span of time, or a rhythm in time",
     record="standstills long enough to see several pulses",
     parameters=(

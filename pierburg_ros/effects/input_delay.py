@@ -1,6 +1,6 @@
 """The duty takes effect late."""
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 
 EFFECT = Effect(
@@ -9,6 +9,7 @@ EFFECT = Effect(
     sentence="The command arrives at the motor late.",
     equation="duty takes effect delay late",
     source="Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. (1998)",
+    elsewhere=Elsewhere(modelica={"command": "delay({input}, {delay})"}, quantities={"command_delay": "delay"}),
     shows_in="after each sharp change of duty",
     record="sharp random steps",
     parameters=(

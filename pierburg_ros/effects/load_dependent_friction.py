@@ -1,6 +1,6 @@
 """Friction that grows with the torque the gear transmits."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -9,6 +9,7 @@ EFFECT = Effect(
     sentence="The harder the motor pushes, the more the gear rubs.",
     equation="friction level + coefficient abs(T_m)",
     source=ARMSTRONG,
+    elsewhere=Elsewhere(modelica={"friction_level": "{coefficient}*abs(motor_torque)"}),
     shows_in="large duty, breaking loose under load",
     record="steps to large and small duty at the same angle",
     parameters=(

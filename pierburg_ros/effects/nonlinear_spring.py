@@ -1,6 +1,6 @@
 """A return spring that gets stiffer with its travel."""
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,6 +10,10 @@ EFFECT = Effect(
     sentence="The spring pulls harder towards the end than its rate says.",
     equation="spring torque + cubic_stiffness angle^3, + knee_stiffness (angle - knee_angle) beyond the knee",
     source="Nayfeh, Mook, Nonlinear Oscillations (1979)",
+    elsewhere=Elsewhere(
+        modelica={"load": "{cubic_stiffness}*angle^3 + {knee_stiffness}*max(angle - {knee_angle}, 0)"},
+        quantities={"spring_cubic_stiffness": "cubic_stiffness"},
+    ),
     shows_in="large angles",
     record="standstills and slow ramps at small and large angles",
     parameters=(

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Missing, Parameter, Start, Variant
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Missing, Parameter, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -27,6 +27,7 @@ EFFECT = Effect(
     sentence="There is a tight spot on the way.",
     equation="friction level + amplitude exp(-((angle - center)/width)^2)",
     source=ARMSTRONG,
+    elsewhere=Elsewhere(modelica={"friction_level": "{amplitude}*exp(-((angle - {center})/{width})^2)"}),
     shows_in="a band of angle, both directions",
     record="slow ramps over the whole travel in both directions",
     parameters=(

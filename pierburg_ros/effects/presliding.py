@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -12,6 +12,10 @@ EFFECT = Effect(
     sentence="Before it slides it gives a little, like standing on a brush.",
     equation="bristle z: friction = stiffness z + damping dz/dt, dz/dt = w - abs(w) z stiffness / (friction level)",
     source="Canudas de Wit, Olsson, Astrom, Lischinsky, A new model for control of systems with friction (1995)",
+    elsewhere=Elsewhere(
+        modelica={"bristle_stiffness": "{stiffness}", "bristle_damping": "{damping}"},
+        quantities={"bristle_stiffness": "stiffness", "bristle_damping": "damping"},
+    ),
     shows_in="the first milliradians after each reversal",
     record="small reversals about several angles",
     parameters=(

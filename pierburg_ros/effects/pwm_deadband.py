@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 EFFECT = Effect(
@@ -11,6 +11,7 @@ EFFECT = Effect(
     sentence="Small commands do not reach the motor.",
     equation="effective duty = sign(duty) max(abs(duty) - width, 0)",
     source="Mohan, Undeland, Robbins, Power Electronics, 3rd ed. (2003)",
+    elsewhere=Elsewhere(modelica={"command": "sign({input})*max(abs({input}) - {width}, 0)"}),
     shows_in="small duty, and every change of its sign",
     record="the return at duty 0, and negative duty",
     parameters=(

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -12,8 +12,15 @@ EFFECT = Effect(
     sentence="The sensor shows where the shaft was a moment ago.",
     equation="time_constant d(measured angle)/dt = angle - measured angle",
     source="Doebelin, Measurement Systems, 5th ed. (2004)",
+    elsewhere=Elsewhere(
+        modelica={
+            "variable": 'lagged(start = start_angle, fixed = true) "angle as the sensor follows it"',
+            "equation": "der(lagged) = ({input} - lagged)/{time_constant}",
+            "sensed": "lagged",
+        }
+    ),
     shows_in="fast travel and its sharp ends",
-    record="sharp random steps and stop contacts",
+    record="sharp random steps, and contacts with a stop where there is one",
     parameters=(
         Parameter(
             "time_constant", None, "of the first-order lag", "s", 0.0, LARGEST, plausible=(0.021, 0.31), stride=5.0

@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
 
 HALVINGS = 52
@@ -14,8 +14,11 @@ EFFECT = Effect(
     sentence="The sensor reads a little too high or too low between its end points.",
     equation="Hall span (x + amplitude sin(half_waves pi x)), x = angle / (pi/2)",
     source="Fraden, Handbook of Modern Sensors, 5th ed. (2016)",
+    elsewhere=Elsewhere(
+        modelica={"sensed": "{input} + {amplitude}*sensor_span*sin({half_waves}*pi*({input})/sensor_span)"}
+    ),
     shows_in="a smooth error over the angle, at rest too",
-    record="standstills over the whole travel, and runs to both stops",
+    record="standstills over the whole travel, and runs to both stops where there are such",
     parameters=(
         Parameter(
             "amplitude",

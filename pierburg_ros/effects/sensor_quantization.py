@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -12,6 +12,7 @@ EFFECT = Effect(
     sentence="The measurement comes in steps.",
     equation="measured value rounded to multiples of step",
     source="Widrow, Kollar, Quantization Noise (2008)",
+    elsewhere=Elsewhere(modelica={"measured": "{step}*floor(({input})/{step} + 0.5)"}),
     shows_in="standstills; a staircase at slow travel",
     record="very slow ramps with little noise",
     parameters=(

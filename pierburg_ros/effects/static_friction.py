@@ -2,7 +2,7 @@
 
 import math
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -13,6 +13,13 @@ EFFECT = Effect(
     equation="friction level T_c + (breakaway_torque - T_c) exp(-(w/stribeck_velocity)^2), "
     "stick up to breakaway_torque",
     source=ARMSTRONG,
+    elsewhere=Elsewhere(
+        modelica={
+            "friction_level": "({breakaway_torque} - coulomb_friction)"
+            "*exp(-(velocity/max({stribeck_velocity}, 1e-6))^2)"
+        },
+        quantities={"breakaway_friction": "breakaway_torque", "stribeck_speed": "stribeck_velocity"},
+    ),
     shows_in="first movement after standstill",
     record="slow ramps with standstills between them",
     parameters=(

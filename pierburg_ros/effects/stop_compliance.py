@@ -1,6 +1,6 @@
 """Elastic end stops: a spring and a damper side by side, the contact of Kelvin and Voigt."""
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,6 +10,10 @@ EFFECT = Effect(
     sentence="The end stops give a little and bounce instead of stopping dead.",
     equation="one-sided, both stops: torque = max(0, stiffness p + damping dp/dt) at penetration p",
     source="Johnson, Contact Mechanics (1985)",
+    elsewhere=Elsewhere(
+        modelica={"stop_stiffness": "{stiffness}", "stop_damping": "{damping}"},
+        quantities={"contact_stiffness": "stiffness", "contact_damping": "damping"},
+    ),
     shows_in="contact with a stop",
     record="duty that presses against each stop, more and less",
     parameters=(

@@ -1,6 +1,6 @@
 """A supply whose voltage falls under current."""
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,6 +10,7 @@ EFFECT = Effect(
     sentence="The supply voltage drops when the motor draws current: thin wires or a weak battery.",
     equation="supply - source_resistance duty i",
     source="Mohan, Undeland, Robbins, Power Electronics, 3rd ed. (2003)",
+    elsewhere=Elsewhere(modelica={"resistance": "{source_resistance}*command^2"}),
     shows_in="large duty",
     record="steps to small and to full duty, with the supply voltage logged",
     parameters=(

@@ -2,9 +2,12 @@
 
 import math
 
-from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+COPPER = 0.0039
+"""Temperature coefficient of the resistance of copper [1/K], from 20 degC (IEC 60028)."""
 
 EFFECT = Effect(
     id="thermal_resistance",
@@ -13,6 +16,18 @@ EFFECT = Effect(
     equation="R (1 + 0.0039 rise), heat_capacity d(rise)/dt = i^2 R - rise / thermal_resistance, "
     "rise 0 at the first sample",
     source="IEC, International standard of resistance for copper, IEC 60028 (1925)",
+    elsewhere=Elsewhere(
+        modelica={
+            "variable": 'rise(start = 0, fixed = true, unit = "K") "of the winding\'s temperature"',
+            "equation": "der(rise) = "
+            f"(armature_resistance*(1 + {COPPER}*rise)*current^2 - rise/{{thermal_resistance}})/{{heat_capacity}}",
+            "resistance": f"armature_resistance*{COPPER}*rise",
+        },
+        quantities={
+            "winding_heat_resistance": "thermal_resistance",
+            "winding_heat_capacity": "heat_capacity",
+        },
+    ),
     shows_in="grows over the recording with the current drawn",
     record="long holding at high duty, then a pause",
     parameters=(
@@ -44,10 +59,6 @@ EFFECT = Effect(
     linear=True,
     drives=("voltage",),
 )
-
-
-COPPER = 0.0039
-"""Temperature coefficient of the resistance of copper [1/K], from 20 degC (IEC 60028)."""
 
 
 @kernel

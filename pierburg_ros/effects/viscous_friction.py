@@ -1,6 +1,6 @@
 """Viscous friction: a torque in proportion to velocity."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Parameter, Variant, grid
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,8 +10,9 @@ EFFECT = Effect(
     sentence="The mechanism is harder to turn the faster it turns, like a bearing in cold grease.",
     equation="friction + coefficient w",
     source=ARMSTRONG,
+    elsewhere=Elsewhere(modelica={"damping": "{coefficient}"}, quantities={"viscous_damping": "coefficient"}),
     shows_in="fast travel, both directions",
-    record="full-duty travel in both directions, and the motor resistance measured",
+    record="full-duty travel in both directions, with the motor resistance measured and held",
     parameters=(
         Parameter(
             "coefficient",

@@ -36,7 +36,8 @@ class Data:
     `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, and of what
     missing messages of the duty may do. `step` is that of the converter where it is coarse beside the noise, otherwise
     0; all in the measured unit. `left_out` are spans [s] without a known input, with the number of their recording,
-    `warnings` what to say first of recordings that lack messages.
+    `warnings` what to say first of recordings that lack messages. `unlike` is by how much the nominal model differs
+    from the simulator that it stands for [measured unit, root mean square], 0 where it stands for none.
     """
 
     actuator: Actuator
@@ -46,6 +47,7 @@ class Data:
     sensor_noise: float = 0.0
     left_out: tuple[tuple[int, Span], ...] = ()
     warnings: tuple[str, ...] = ()
+    unlike: float = 0.0
 
     @property
     def several(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import decoded, sensitivity
+from pierburg_ros.plant.decode import angle_per_unit, decoded, sensitivity
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
@@ -46,13 +47,15 @@ samples is rounded by less than 250 x 1.1e-16 = 2.8e-14 of them."""
 class InitialState:
     """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit.
 
-    It is `known` where the shaft stands still or creeps.
+    It is `known` where the shaft stands still or creeps. `angle` [rad] is what else is known of the angle where the
+    speed is measured; else the shaft is taken to begin where its load lets it rest.
     """
 
     level: float
     rate: float
     noise: float
     known: bool
+    angle: float = math.nan
 
     @staticmethod
     def of(time: Signal, measured: Signal) -> InitialState:
@@ -71,6 +74,8 @@ class InitialState:
 
     def state(self, model: Model, quantity: str) -> tuple[float, float]:
         """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
+        if quantity == "speed":
+            return self._turning(model)
         angle = float(decoded(model, self.level, quantity))
         per_radian = sensitivity(model, angle, quantity)
         margin = 3.0 * self.noise / abs(per_radian)
@@ -80,6 +85,21 @@ class InitialState:
         if angle >= upper - margin:
             return upper, 0.0
         return angle, self.rate / per_radian
+
+    def _turning(self, model: Model) -> tuple[float, float]:
+        """The same where the speed is measured; at rest where noise allows it."""
+        angle = rest_angle(model) if math.isnan(self.angle) else self.angle
+        velocity = float(decoded(model, self.level, "speed"))
+        margin = 3.0 * self.noise * abs(angle_per_unit(model))
+        return angle, 0.0 if abs(velocity) <= margin else velocity
+
+
+def rest_angle(model: Model) -> float:
+    """Where an actuator without input comes to rest [rad]: on its stop, at the end of its spring, or hanging down."""
+    value, actuator = model.values, model.actuator
+    stiffness = value.get("spring_stiffness", 0.0)
+    relaxed = -value.get("spring_preload", 0.0) / stiffness if stiffness > 0.0 else 0.0
+    return min(max(relaxed, actuator.lower_stop), actuator.upper_stop)
 
 
 def from_standstill(recording: Recording, nominal: Model) -> Recording:

@@ -24,7 +24,7 @@ def identification_page(
     starts = offsets(recordings)
     context = {
         "title": f"{found.model.actuator.name}, identified from {', '.join(each.name for each in recordings)}",
-        "unit": recordings[0].unit,
+        "unit": found.model.actuator.shown(recordings[0].unit),
         "found": found,
         "parameters": parameter_rows(found, content),
         "lumps": content["lumps"] or {},

@@ -10,9 +10,11 @@ import plotly.graph_objects as go
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pierburg_ros.actuators.wording import input_title, quantity_title
+from pierburg_ros.comparison.plot import drawn_input
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
-from pierburg_ros.pages.over_time import Curve, Panel, finished, label, over_time
+from pierburg_ros.pages.over_time import Curve, Panel, finished, over_time
 from pierburg_ros.recording import Recording
 
 BRANCHES = ((1, "opening", "#d62728"), (-1, "closing", "#1f77b4"))
@@ -80,13 +82,13 @@ def signals_of(found: Identification, recordings: Sequence[Recording]) -> dict[s
         "time": np.concatenate([r.time - r.time[0] + start for r, start in zip(recordings, starts, strict=True)]),
         "measured": np.concatenate([recording.measured for recording in recordings]),
         "residual": np.concatenate(found.fitted.residuals),
-        "command": np.concatenate([recording.command.at(recording.time, before=0.0) for recording in recordings]),
+        "command": np.concatenate([drawn_input(recording) for recording in recordings]),
     }
 
 
 def figure(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
     """Measured and simulated, residual, and input over the time of all recordings one after another."""
-    signals, unit = signals_of(found, recordings), recordings[0].unit
+    signals, unit = signals_of(found, recordings), found.model.actuator.shown(recordings[0].unit)
     measured, residual, command = ((f"0/{name}", signals[name]) for name in ("measured", "residual", "command"))
     answers = [
         Curve("measured", "measured", "measured", measured),
@@ -94,9 +96,14 @@ def figure(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
     ]
     left = [Curve("residual", "residual", "residual", residual)]
     panels = [
-        Panel("measured and simulated", label(recordings[0].quantity, unit), answers, 0.45),
+        Panel("measured and simulated", quantity_title(recordings[0].quantity, unit), answers, 0.45),
         Panel("residual; grey: noise", f"residual [{unit}]", left, 0.33, 1.96 * found.noise),
-        Panel("input", recordings[0].input, [Curve("input", "input", "input", command, steps=True)], 0.22),
+        Panel(
+            "input",
+            input_title(recordings[0].input, found.model.actuator.motion),
+            [Curve("input", "input", "input", command, steps=True)],
+            0.22,
+        ),
     ]
     drawn = over_time(("0/time", signals["time"]), panels)
     return drawn.update_layout(title=f"Identification of {escape(found.model.actuator.name)}", height=800)

@@ -98,7 +98,7 @@ class Comparison(Result):
 
     def rows(self) -> dict[str, str]:
         """What was measured, what acts in the model, and how far both are apart."""
-        recording, worst, unit = self.recording, self.found.worst, self.recording.unit
+        recording, worst, unit = self.recording, self.found.worst, self.found.unit
         explained = self.found.variance_explained
         return {
             "measured": f"{recording.quantity.replace('_', ' ')} in {unit}, {recording.time.size} samples"

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Progress = Callable[[str], None]
+USUAL_BUDGET = 120.0
+"""Time [s] after which the best verdict yet is given unless told otherwise."""
 
 
 @dataclass(frozen=True)
@@ -120,14 +122,19 @@ def diagnose(
     *,
     actuator: ActuatorLike | None = None,
     model: ModelLike | None = None,
+    simulation: Readable | Sequence[Readable] | None = None,
     progress: Progress | None = None,
     jobs: int | None = None,
+    budget: float | None = USUAL_BUDGET,
 ) -> Diagnosis:
     """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
 
     Recordings of one actuator or their paths; compared with `model`, or with `actuator` as described (by default
-    the Pierburg valve). `progress` is told in words what is being tried. `jobs` is the number of fits at a time, by
-    default one for each core. Takes seconds to minutes. InputError where a recording cannot be used.
+    the Pierburg valve). Recordings that your own simulator made of the same actuator, as `simulation`, stand for the
+    model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
+    words what is being tried. `jobs` is the number of fits at a time, by default one for each core. Takes seconds to
+    minutes: after `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; None takes what it takes.
+    InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
         print(diagnosis.verdict, diagnosis.effects)
@@ -135,5 +142,6 @@ def diagnose(
     """
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = recordings_of(recordings, nominal.actuator)
-    found = diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs)
-    return Diagnosis(found, tuple(measured))
+    simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
+    found = diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs, budget, simulated)
+    return Diagnosis(found, (*measured, *simulated))

@@ -7,8 +7,11 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import Recording, read_recording
+from pierburg_ros.recording.signal_map import SignalMap, signal_map
+from pierburg_ros.recording.signals import SIGNALS
 
 Readable: TypeAlias = Recording | str | Path
 """A recording, or where one lies."""
@@ -33,8 +36,22 @@ def read(
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
+    chosen = signal_map(signals, topics or {})
     preferred = () if actuator is None else (actuator.input, actuator.quantity)
-    return read_recording(path, time=time, topics=topics, signals=signals, preferred=preferred)
+    if actuator is not None:
+        check_motion(chosen, actuator)
+    return read_recording(path, time=time, signals=chosen, preferred=preferred)
+
+
+def check_motion(chosen: SignalMap, actuator: Actuator) -> None:
+    """Refuse lengths for a rotary actuator, and angles for a linear one."""
+    for signal, source in chosen.sources.items():
+        expected = unit_of(SIGNALS[signal].units[0], actuator.motion)
+        if source.measures not in ("", expected):
+            raise InputError(
+                f"{source.origin} is in a unit of {source.measures}, expected one of {expected}:"
+                f" {actuator.name} is {actuator.motion}. Correct the unit, or give another --actuator."
+            )
 
 
 def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> list[Recording]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Schedule, Settings, read_duty_file, read_parameter_file, read_setpoint_file
+from pierburg_ros.control.schedule import read_schedule
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.intake import check_count
@@ -82,12 +83,17 @@ class Simulation(Result):
 
     @property
     def measured(self) -> Signal:
-        """Hall voltage [V] or position [rad] at each time, shape (samples,)."""
+        """Hall voltage [V], position [rad] or speed [rad/s] at each time, shape (samples,)."""
         return self.recording.measured
 
     @property
-    def duty(self) -> Signal:
-        """Duty [1] in force at each time, shape (samples,)."""
+    def unit(self) -> str:
+        """Unit of the measured quantity."""
+        return self.model.actuator.shown(self.recording.unit)
+
+    @property
+    def command(self) -> Signal:
+        """Duty [1], current [A] or torque [N.m] in force at each time, shape (samples,)."""
         return self.recording.command.at(self.recording.time, before=0.0)
 
     @property
@@ -96,29 +102,29 @@ class Simulation(Result):
         return " with ".join([self.model.actuator.name, *filter(None, [", ".join(self.model.active_effects)])])
 
     def to_json(self) -> str:
-        """Every sample as JSON: time [s], duty [1], measured [V or rad]."""
+        """Every sample as JSON: time [s], the input, and what is measured."""
         columns = {name: values.tolist() for name, values in self.columns().items()}
         about = {"schema": 1, "model": self.model.as_mapping(), "quantity": self.recording.quantity}
-        return json.dumps({**about, "unit": self.recording.unit, **columns}, allow_nan=False) + "\n"
+        return json.dumps({**about, "unit": self.unit, **columns}, allow_nan=False) + "\n"
 
     def figure(self) -> go.Figure:
-        """Measured quantity and duty over time, as a Plotly figure."""
+        """Measured quantity and input over time, as a Plotly figure."""
         from pierburg_ros.library.signal_plot import figure
 
-        return figure(self.recording, self.title)
+        return figure(self.recording, self.model.actuator, self.title)
 
     def picture(self) -> Figure:
         """The same as a Matplotlib figure."""
         from pierburg_ros.library.signal_plot import picture
 
-        return picture(self.recording, self.title)
+        return picture(self.recording, self.model.actuator, self.title)
 
     def columns(self) -> dict[str, Signal]:
-        """Time [s], duty in force [1] and measured [V or rad], each of shape (samples,)."""
-        return {"time": self.time, "duty": self.duty, self.recording.quantity: self.measured}
+        """Time [s], the input in force and what is measured, each of shape (samples,)."""
+        return {"time": self.time, self.recording.input: self.command, self.recording.quantity: self.measured}
 
     def table(self) -> pandas.DataFrame:
-        """One row a sample: time [s], duty in force [1], hall_voltage [V] or position [rad]."""
+        """One row a sample: time [s], duty [1] (or current, torque) in force, hall_voltage [V] (or position, speed)."""
         return data_frame(self.columns())
 
     def rows(self) -> dict[str, str]:
@@ -126,7 +132,7 @@ class Simulation(Result):
         low, high = float(self.measured.min()), float(self.measured.max())
         return {
             "simulated": f"{self.recording.duration:.2f} s, {self.time.size} samples",
-            self.recording.quantity.replace("_", " "): f"{low:.4g} to {high:.4g} {self.recording.unit}",
+            self.recording.quantity.replace("_", " "): f"{low:.4g} to {high:.4g} {self.unit}",
         }
 
     def write_into(self, folder: Path) -> None:
@@ -149,9 +155,10 @@ def simulate(
 ) -> Simulation:
     """The actuator of `model` under a duty (open loop) or under the controller (closed loop).
 
-    `duty` [1, from -1 to 1] or `setpoints` [rad] are values of shape (changes,) that each hold from their `time` [s]
-    until the next one; or a file, a CSV with the header `time,duty` or `time,setpoint`; or, for the duty, a
-    recording or its path. `controller`: settings, or their parameter file. `duration` [s] and `rate` [Hz] of the
+    `duty` [1, from -1 to 1; current in A or torque in N.m where the actuator is driven by one] or `setpoints` [rad]
+    are values of shape (changes,) that each hold from their `time` [s] until the next one; or a file, a CSV with the
+    header `time,duty` or `time,setpoint`; or, for the duty, a recording or its path. `controller`: settings, or their
+    parameter file. `duration` [s] and `rate` [Hz] of the
     samples; by default those of the input, or 500 Hz. `noise` is its RMS in the measured unit, drawn by `seed`;
     `initial_angle` [rad]. InputError where the input or the model cannot be used.
 
@@ -190,11 +197,16 @@ def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling
     supply: Channel | None = None
     enabled: Channel | None = None
     if isinstance(duty, (str, Path)) and is_duty_file(Path(duty)):
-        schedule = read_duty_file(duty)
+        schedule = read_duty_file(duty) if model.actuator.input == "duty" else read_input_file(duty, model)
         inputs, channel = Inputs(schedule.time, schedule.values), Channel(schedule.time, schedule.values)
         times = sampling.times(float(schedule.time[-1]) + AFTER_LAST)
     elif isinstance(duty, (str, Path, Recording)):
         recorded = duty if isinstance(duty, Recording) else read(duty, actuator=model.actuator)
+        if recorded.input != model.actuator.input:
+            raise InputError(
+                f"{recorded.name} holds a {recorded.input} and actuator {model.actuator.name} is driven by a"
+                f" {model.actuator.input}; expected a recorded {model.actuator.input}."
+            )
         inputs, channel = inputs_of(recorded), recorded.command
         supply, enabled = recorded.supply_voltage, recorded.enabled
         times = sampling.times_like(recorded.time)
@@ -206,7 +218,20 @@ def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling
     measured = simulate_measurement(model, inputs, times, sampling.noise, sampling.seed, sampling.initial_angle)
     last = float(times[-1])
     supply, enabled = (each and until(each, last) for each in (supply, enabled))
-    return Recording(FILE, model.actuator.quantity, times, measured, until(channel, last), supply, enabled=enabled)
+    held, driven_by = until(channel, last), model.actuator.input
+    return Recording(FILE, model.actuator.quantity, times, measured, held, supply, enabled=enabled, input=driven_by)
+
+
+def read_input_file(path: str | Path, model: Model) -> Schedule:
+    """The currents [A] or torques [N.m] in a CSV with the header `time,current` or `time,torque`."""
+    return read_schedule(path, model.actuator.input, finite)
+
+
+def finite(value: float) -> float:
+    """The value itself; InputError where it is no finite number."""
+    if not np.isfinite(value):
+        raise InputError(f"{value} is not finite; give a number.")
+    return value
 
 
 def scheduled(setpoints: Values | str | Path, time: Values | None) -> Schedule:
@@ -241,4 +266,4 @@ def is_duty_file(path: Path) -> bool:
         return False
     with path.open(encoding="utf-8", errors="replace") as file:
         header = file.readline()
-    return not any(measured in header for measured in ("hall_voltage", "position"))
+    return not any(measured in header for measured in ("hall_voltage", "position", "speed"))

@@ -142,6 +142,10 @@ class MonitorNode(LiveNode):
 def watched_model(actuator: str, path: str) -> Model:
     """The model of a file, or the nominal one of an actuator; InputError where its supply is none of its parameters."""
     model = read_model(path) if path else Model.nominal(read_actuator(actuator))
+    if model.actuator.quantity == "speed":
+        raise InputError(
+            f"Actuator {model.actuator.name} measures its speed; the monitor follows angles. Choose another one."
+        )
     if model.values.get("supply_voltage", 0.0) == 0.0:
         raise InputError(
             f"Actuator {model.actuator.name} has no supply_voltage; the monitor follows actuators that are driven by "

@@ -27,12 +27,6 @@ COLOURS = {
 OTHERS = 8
 """Colours that a page has for further curves, `other-0` and so on."""
 WINDOW, MISSING = "#f5c542", "#8a94a0"
-QUANTITIES = {"hall_voltage": "Hall voltage", "position": "angle", "speed": "speed"}
-
-
-def label(quantity: str, unit: str) -> str:
-    """A measured quantity with its unit, for an axis."""
-    return f"{QUANTITIES[quantity]} [{unit}]"
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,12 @@ def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> N
     return np.asarray(sensor.decode_all(record, values.ravel(), is_angle)).reshape(values.shape)
 
 
+def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
+    """Hall voltage [V] that a straight sensor with the ends of `model` shows at each `angle` [rad], same shape."""
+    record = model.record()[0]
+    return np.asarray(record["hall_voltage_closed"] + sensor.per_radian(record) * np.asarray(angle, dtype=np.float64))
+
+
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
     """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
     shown = decoded(model, measured, quantity)

@@ -66,6 +66,8 @@ class Clocks:
         self.others = topics.stamped() if choice in (None, "stamp") else None
         self.stamps = None if self.others is None else self.own_stamps(self.others)
         self.ticks = topics.ticks() if choice in (None, "clock") else None
+        if self.asked and self.others is not None and self.others.type == cdr.CLOCK:
+            self.choice, self.ticks = "clock", self.others
         self.sources = {
             "stamp": self.stamped,
             "clock": self.clocked,

@@ -147,7 +147,8 @@ class TableReader:
         for signal in order:
             if self.has(signal):
                 return signal
-        found, usual = ", ".join(part.listed() for part in self.tables.of(())), signals[order[0]]
+        every = (self.tables.own, *(part for parts in self.tables.parts.values() for part in parts))
+        found, usual = ", ".join(part.listed() for part in every if part is not None), signals[order[0]]
         raise InputError(
             f"{self.tables.name} has no {usual} column (found: {found}), {FORM}. Name it with --topic {usual}=COLUMN."
         )

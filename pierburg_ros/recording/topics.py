@@ -84,17 +84,20 @@ class Topics:
 
     def called(self, name: str, signal: str) -> str | None:
         """The topic with messages and this last name."""
-        candidates = [topic for topic in self.bag.types if last_name(topic) == name]
-        candidates = [topic for topic in candidates if self.bag.data[topic]] or candidates[:1]
-        namespaces = {namespace(source.name) for source in self.chosen.sources.values()}
-        if len(candidates) > 1:
-            candidates = [topic for topic in candidates if namespace(topic) in namespaces] or candidates
+        candidates = self.all_called(name)
         if len(candidates) > 1:
             raise InputError(
                 f"{self.bag.name} has {len(candidates)} topics for {name} ({', '.join(sorted(candidates))}),"
                 f" expected one. Choose with --topic {signal}={sorted(candidates)[0]}."
             )
         return candidates[0] if candidates else None
+
+    def all_called(self, name: str) -> list[str]:
+        """The topics with this last name: those with messages, and in a namespace that a person chose, if any are."""
+        candidates = [topic for topic in self.bag.types if last_name(topic) == name]
+        candidates = [topic for topic in candidates if self.bag.data[topic]] or candidates[:1]
+        namespaces = {namespace(source.name) for source in self.chosen.sources.values()}
+        return [topic for topic in candidates if namespace(topic) in namespaces] or candidates
 
     def chosen_topic(self, source: Source, signal: str) -> str:
         """The topic that a person named for `signal`."""
@@ -126,6 +129,8 @@ class Topics:
                 )
             return self.bag.messages(self.named(time.topic, "time", time.origin))
         source = self.chosen.sources.get("position")
+        if self.chosen.sources and not source and len(self.all_called("joint_states")) > 1:
+            return None  # joints of others, beside signals that a person chose
         topic = self.chosen_topic(source, "position") if source else self.called("joint_states", "position")
         is_joint = topic is not None and self.bag.data[topic] and self.bag.types[topic] == JOINT_STATE
         return self.bag.messages(topic) if topic is not None and is_joint else None

@@ -34,3 +34,9 @@ def test_a_sensor_whose_ends_are_known_to_differ_is_no_fault() -> None:
     assert result.diagnosis.verdict == "consistent"
     assert result.diagnosis.fit.validation.final_rmse == pytest.approx(0.003, rel=0.05)
     assert result.model.values["hall_voltage_open"] == 4.4
+
+
+def test_without_time_the_best_verdict_yet_is_given_and_marked():
+    found = diagnose([recording({"pwm_deadband.width": 0.02}, duration=8.0)], NOMINAL, budget=0.01)
+    assert found.diagnosis.stopped and "best verdict yet" in found.diagnosis.summary
+    assert not found.diagnosis.ruled_out and not found.diagnosis.effects

@@ -20,9 +20,10 @@ from pierburg_ros.diagnosis.schema import (
 QUALITY = DataQuality(rate=500.0, jitter=0.0, gaps=0, saturated_share=0.0, stops_touched=[], excited="nothing")
 NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.inf)
 CONTRACT = {
-    "schema", "recordings", "quantity", "unit", "verdict", "summary", "effects", "parameters", "changes", "locations",
-    "regimes", "fit", "candidates", "not_testable", "cannot_act", "ruled_out", "remaining", "excluded",
-    "residual_torque", "data_quality", "advice",
+    "schema", "recordings", "quantity", "unit", "input", "motion", "verdict", "summary", "stopped", "effects",
+    "parameters", "changes", "locations", "regimes", "fit", "candidates", "not_testable", "cannot_act", "ruled_out",
+    "remaining",
+    "excluded", "residual_torque", "data_quality", "advice",
 }  # fmt: skip
 
 

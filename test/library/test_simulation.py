@@ -12,7 +12,7 @@ def test_arrays_drive_the_plant_and_are_sampled_where_they_change(stiff):
     made = pr.simulate(stiff, duty=[0.0, 0.24, 0.3, 0.0], time=time)
     expected = simulate(stiff, Inputs(time, np.array([0.0, 0.24, 0.3, 0.0])), time)
     np.testing.assert_allclose(made.measured, expected, atol=1e-12)
-    np.testing.assert_array_equal(made.duty, [0.0, 0.24, 0.3, 0.0])
+    np.testing.assert_array_equal(made.command, [0.0, 0.24, 0.3, 0.0])
 
 
 def test_a_rate_and_a_duration_choose_the_samples(stiff):
@@ -30,7 +30,7 @@ def test_a_saved_simulation_reads_as_it_was(simulation, tmp_path):
     recording = pr.read(tmp_path / "simulated.mcap")
     np.testing.assert_array_equal(recording.measured, simulation.measured)
     np.testing.assert_allclose(recording.time, simulation.time, atol=1e-9)
-    np.testing.assert_array_equal(recording.command.at(recording.time), simulation.duty)
+    np.testing.assert_array_equal(recording.command.at(recording.time), simulation.command)
 
 
 def test_the_controller_brings_the_shaft_to_its_setpoints():

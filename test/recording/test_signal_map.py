@@ -4,10 +4,10 @@ import sqlite3
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosbags.rosbag2 import CompressionMode, StoragePlugin, Writer
-from support.foreign_bags import STORE, T, bench_run, header, joints, write_foreign
+from support.foreign_bags import STORE, T, bench_run, board, header, joints, stamp, write_foreign
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
@@ -160,6 +160,47 @@ def test_a_map_undoes_what_was_done_to_the_numbers(tmp_path_factory, scale, offs
     np.testing.assert_allclose(recording.command.values, 0.005 * np.arange(25), atol=1e-15)
 
 
+@given(
+    scale=st.floats(1e-3, 1e3),
+    offset=st.floats(-10.0, 10.0),
+    sign=st.sampled_from((1, -1)),
+    unit=st.sampled_from((("rad", 1.0), ("deg", np.pi / 180), ("mrad", 1e-3), ("rev", 2 * np.pi))),
+)
+@settings(max_examples=20)
+def test_a_map_of_a_bag_gives_the_plain_recording(tmp_path_factory, scale, offset, sign, unit):
+    folder = tmp_path_factory.mktemp("property")
+    plain, raw = [], []
+    for k in range(25):
+        time, angle = 1000.0 + 0.01 * k, 0.06 * k
+        number = (angle - offset) / (sign * unit[1] * scale)
+        duty = ("/duty", FLOAT64, time, T[FLOAT64](0.01 * k))
+        plain += [("/position", FLOAT64, time, T[FLOAT64](angle)), duty]
+        raw += [("/encoder", "bench/msg/Board", time, board(number, 0)), duty]
+    first = read_recording(write_foreign(folder / "plain", plain))
+    entry = {"topic": "/encoder", "field": "channels[supply].volts", "unit": unit[0]}
+    signals = {"position": {**entry, "scale": scale, "offset": offset, "sign": sign}}
+    second = read_recording(write_foreign(folder / "raw", raw), signals=signals)
+    np.testing.assert_allclose(second.measured, first.measured, rtol=1e-12, atol=1e-12)
+    np.testing.assert_array_equal(second.time, first.time)
+    np.testing.assert_array_equal(second.command.values, first.command.values)
+
+
+def test_what_a_map_does_not_name_changes_nothing(tmp_path, written):
+    text = "std_msgs/msg/String"
+    logs = [
+        (topic, text, 1000.0 + 0.05 * k, T[text]("armature_resistance 4.7"))
+        for k in range(12)
+        for topic in ("/rosout", "/parameter_events", "/diagnostics")
+    ]
+    few = write_foreign(tmp_path / "few", bench_run())
+    many = write_foreign(tmp_path / "many", sorted(bench_run() + logs, key=lambda message: message[2]))
+    plain, noisy = (read_recording(bag, signals=written(MAP)) for bag in (few, many))
+    np.testing.assert_array_equal(plain.measured, noisy.measured)
+    np.testing.assert_array_equal(plain.command.values, noisy.command.values)
+    np.testing.assert_array_equal(plain.time, noisy.time)
+    assert plain.losses == noisy.losses
+
+
 @pytest.mark.parametrize(
     ("unit", "first", "step"),
     [("s", 0.0, 0.01), ("ms", 5.0, 10.0), ("us", 1.7e15, 1e4), ("ns", 1.7e18, 1e7), ("s", 1.7e9, 0.01)],
@@ -232,6 +273,34 @@ def test_what_a_map_asks_for_and_a_bag_has_not(tmp_path, written, entry, said):
     bag = write_foreign(tmp_path / "bag", bench_run(5))
     text = f'duty: {entry}\nposition: {{topic: /joint_states, field: "position[elbow]"}}\n'
     assert said in refusal(bag, written(text))
+
+
+def test_the_time_may_be_a_clock(tmp_path, written):
+    messages = []
+    for k in range(40):
+        log, simulated = 1000 + 0.02 * k, stamp(5.0 + 0.01 * k)
+        messages.append(("/sim/time", "rosgraph_msgs/msg/Clock", log, T["rosgraph_msgs/msg/Clock"](simulated)))
+        messages += [(topic, FLOAT64, log + 0.001, T[FLOAT64](0.1)) for topic in ("/duty", "/hall_voltage")]
+    bag = write_foreign(tmp_path / "bag", messages)
+    recording = read_recording(bag, signals=written("time: {topic: /sim/time, field: clock}\n"))
+    assert recording.time_source == "clock"
+    np.testing.assert_allclose(recording.time, 0.01 * np.arange(40), atol=1e-9)
+
+
+def test_joints_of_others_do_not_matter_beside_what_a_person_chose(tmp_path, written):
+    messages = []
+    for k in range(20):
+        time = 1000 + 0.01 * k
+        for arm in ("/left/joint_states", "/right/joint_states"):
+            messages.append((arm, "sensor_msgs/msg/JointState", time, joints(time, elbow=1.0)))
+        messages += [(topic, FLOAT64, time, T[FLOAT64](0.1)) for topic in ("/bench/pwm", "/bench/angle")]
+    bag = write_foreign(tmp_path / "bag", messages)
+    recording = read_recording(bag, signals=written("duty: {topic: /bench/pwm}\nposition: {topic: /bench/angle}\n"))
+    assert recording.time.size == 20 and recording.time_source == "publish"
+    hall = "duty: {topic: /bench/pwm}\nhall_voltage: {topic: /bench/angle}\n"
+    assert read_recording(bag, signals=written(hall)).time.size == 20
+    with pytest.raises(InputError, match="has 2 topics for joint_states"):
+        read_recording(bag)
 
 
 def test_stamps_that_no_signal_shares_are_refused(tmp_path, written):

@@ -78,7 +78,7 @@ def diagnosis(**changes) -> Diagnosis:
 def result(drawn: int = 5, **changes) -> Result:
     """A result with `drawn` rivals of which the page has the signals, and two recordings."""
     measured = 2.0 + np.sin(TIME)
-    signals = {"time": TIME, "measured": measured, "duty": 0.1 * np.sin(TIME)}
+    signals = {"time": TIME, "measured": measured, "command": 0.1 * np.sin(TIME)}
     signals |= dict.fromkeys(("nominal", "recalibrated", "final"), measured + 0.1)
     said = diagnosis(**changes)
     rivals = [

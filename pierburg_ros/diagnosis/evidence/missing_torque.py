@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import INSTANT
@@ -96,14 +97,17 @@ def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
     own = data.scales
     per_unit, instant = data.angle_per_unit / own.angle, INSTANT * own.time
     grid = np.arange(run.time[0], run.time[-1], instant)
-    simulated, measured = (_averaged(run.time, values, grid) for values in (run.simulated(model), run.measured))
+    simulated, measured = (
+        _averaged(run.time, _way(run, values), grid) for values in (run.simulated(model), run.measured)
+    )
     damping = braking(model) / own.of_unit("N.m.s/rad")
     stiffness = value.get("spring_stiffness", 0.0) / own.of_unit("N.m/rad")
     error = per_unit * (measured - simulated)
     torque = -(damping * np.gradient(error, INSTANT) + stiffness * error)
     speeds = per_unit * np.gradient(measured, INSTANT), per_unit * np.gradient(simulated, INSTANT)
     moving = (np.abs(speeds[0]) > MOVING) & (np.abs(speeds[1]) > MOVING) & (speeds[0] * speeds[1] > 0.0)
-    angle = decoded(model, measured[moving], run.quantity) / own.angle
+    quantity = "position" if run.quantity == "speed" else run.quantity
+    angle = decoded(model, measured[moving], quantity) / own.angle
     return MissingTorque(
         time=grid[moving] / own.time,
         angle=angle,
@@ -112,6 +116,11 @@ def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
         gear_ratio=value["gear_ratio"] * own.angle,
         end=float(run.time[-1]) / own.time,
     )
+
+
+def _way(run: Run, values: Signal) -> Signal:
+    """Measured `values`, or what a measured speed adds up to."""
+    return cumulative_trapezoid(values, run.time, initial=0.0) if run.quantity == "speed" else values
 
 
 def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:

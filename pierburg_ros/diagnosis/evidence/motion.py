@@ -11,7 +11,7 @@ from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded
+from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
 
 INSTANT = 0.21
 """Shortest time over which a motion is told, in the actuator's own: half the window of a velocity, and the grid of
@@ -30,12 +30,12 @@ valve; it names windows and regimes and decides no verdict."""
 
 @dataclass(frozen=True)
 class Motion:
-    """All of shape (samples,). The angle [rad] is read by the nominal sensor, the duty is the one in force."""
+    """All of shape (samples,). The angle [rad] is read by the nominal sensor, the command is the one in force."""
 
     time: Signal
     angle: Signal
     velocity: Signal
-    duty: Signal
+    command: Signal
     moving: Flags
     closed: Flags
     open: Flags
@@ -47,6 +47,12 @@ class Motion:
     def scales(self) -> Scales:
         """What is large for the actuator."""
         return Scales.of(self.actuator)
+
+    @property
+    def effort(self) -> Signal:
+        """The command as a share of a large one: a duty as it is."""
+        large = {"duty": 1.0, "current": self.scales.current, "torque": self.scales.torque}
+        return np.asarray(self.command / large[self.actuator.input])
 
     @property
     def direction(self) -> Signal:
@@ -100,21 +106,23 @@ class Motion:
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
     nominal, scales = Model.nominal(actuator), Scales.of(actuator)
-    angle, per_unit = decoded(nominal, run.measured, run.quantity), angle_per_unit(nominal)
+    angle, per_unit = turned(nominal, run.time, run.measured, run.quantity), angle_per_unit(nominal)
     interval = float(np.median(np.diff(run.time)))
     half = max(INSTANT * scales.time, 2.0 * interval)
     spread = noise * abs(per_unit)
     # each end of the difference is a mean over the half window
     slowest = max(SLOWEST * scales.angle / scales.time, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
     velocity = slope(run.time, angle, half)
+    if run.quantity == "speed":
+        velocity, spread = decoded(nominal, run.measured, run.quantity), 0.0
     near = NEAR * scales.angle + 3.0 * spread
     place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
-    duty = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])
+    command = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])
     return Motion(
         time=run.time - run.time[0],
         angle=angle,
         velocity=velocity,
-        duty=duty,
+        command=command,
         moving=np.abs(velocity) > slowest,
         closed=angle <= actuator.lower_stop + near,
         open=angle >= actuator.upper_stop - near,

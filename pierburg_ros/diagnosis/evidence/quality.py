@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.actuators.wording import place
+from pierburg_ros.arrays import Flags
 from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
@@ -57,19 +59,19 @@ SHORT_TRAVEL = 0.22
 advice and decides no verdict."""
 
 RECORD: dict[Kind, str] = {
-    "no_movement": "Record again with duty steps large enough to move the shaft both ways.",
-    "constant_duty": "Record again with duty steps of several sizes.",
-    "saturated": "Record again with duty steps well within the limits, up and down.",
+    "no_movement": "Record again with {input} steps large enough to move the shaft both ways.",
+    "constant_duty": "Record again with {input} steps of several sizes.",
+    "saturated": "Record again with {input} steps well within the limits, up and down.",
     "begins_moving": "Start recording before the shaft moves.",
     "short": "Record a minute, with movements in both directions.",
     "slow_sampling": "Record with a shorter sample period.",
     "gaps": "Record on an idle machine, or with the recorder's queue made longer.",
     "one_direction": "Record opening and closing over the same angles.",
     "little_travel": "Record movements over the whole travel.",
-    "closed_stop": "Record a return to the closed stop at duty 0, then press against it with negative duty.",
-    "open_stop": "Record a run to the open stop, and press against it with more and less duty.",
+    "closed_stop": "Record a return to the closed stop at {input} 0, then press against it with negative {input}.",
+    "open_stop": "Record a run to the open stop, and press against it with more and less {input}.",
 }
-"""What to record next to lift each limit."""
+"""What to record next to lift each limit; `{input}` is what drives the actuator."""
 
 
 @dataclass(frozen=True)
@@ -80,11 +82,13 @@ class Limit:
     finding: str
     decisive: bool = False
     """Whether nothing at all can be concluded about the physics."""
+    input: str = "duty"
+    """What drives the actuator."""
 
     @property
     def record(self) -> str:
         """What to record next to lift it."""
-        return RECORD[self.kind]
+        return RECORD[self.kind].format(input=self.input)
 
 
 def refuse_unusable(recordings: Sequence[Recording], scales: Scales) -> None:
@@ -105,7 +109,7 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQ
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
     regular = intervals[intervals <= GAP * median]
-    full = np.concatenate([np.abs(motion.duty) >= 0.999 for motion in motions])
+    full = np.concatenate([_at_limit(motion) for motion in motions])
     return DataQuality(
         rate=float(f"{1.0 / median:.6g}"),
         jitter=round(float(np.std(regular)), 9),
@@ -121,17 +125,18 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQ
 def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Limit]:
     """Everything that keeps these runs from telling more, the gravest first."""
     motions = [motion_of(run, actuator, noise) for run in runs]
-    return [
+    limits = [
         *_limits_of_movement(motions, runs, noise),
         *_limits_of_start(runs, actuator),
         *_limits_of_sampling(runs, Scales.of(actuator)),
         *_limits_of_reach(motions),
     ]
+    return [replace(limit, input=actuator.input) for limit in limits]
 
 
 def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: float) -> list[Limit]:
     limits = []
-    duty = np.concatenate([motion.duty for motion in motions])
+    command, driven_by = np.concatenate([motion.command for motion in motions]), motions[0].actuator.input
     if not any(np.any(motion.moving) for motion in motions):
         travel = max(float(np.ptp(run.measured)) for run in runs)
         unit = motions[0].actuator.unit
@@ -143,15 +148,15 @@ def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: f
                 decisive=True,
             )
         )
-    if np.ptp(duty) == 0.0:
+    if np.ptp(command) == 0.0:
         limits.append(
             Limit(
                 "constant_duty",
-                f"The duty is {duty[0]:.3g} throughout: motor, friction and spring cannot be told apart.",
+                f"The {driven_by} is {command[0]:.3g} throughout: motor, friction and spring cannot be told apart.",
                 decisive=True,
             )
         )
-    full = float(np.mean(np.abs(duty) >= 0.999))
+    full = float(np.mean(np.concatenate([_at_limit(motion) for motion in motions])))
     if full >= SATURATED:
         limits.append(
             Limit(
@@ -225,10 +230,8 @@ def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
         limits.append(Limit("one_direction", f"The shaft only {way}: friction cannot be told from spring and load."))
     travel = _span(motions)
     if travel[1] - travel[0] < SHORT_TRAVEL * motions[0].scales.angle:
-        reach = math.degrees(travel[1] - travel[0])
-        limits.append(
-            Limit("little_travel", f"The shaft travels {reach:.1f} degrees: what depends on the angle stays unseen.")
-        )
+        reach = place(travel[1] - travel[0], travel[1] - travel[0], motions[0].actuator.motion)
+        limits.append(Limit("little_travel", f"The shaft travels {reach}: what depends on the angle stays unseen."))
     actuator = motions[0].actuator
     for end, stop in (("closed", actuator.lower_stop), ("open", actuator.upper_stop)):
         if math.isfinite(stop) and not _touched(motions, end):
@@ -244,23 +247,28 @@ def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
 
 def excited(motions: Sequence[Motion]) -> str:
     """What was moved how far, in words."""
-    lowest, highest = (math.degrees(angle) for angle in _span(motions))
-    duty = np.concatenate([motion.duty for motion in motions])
+    actuator, command = motions[0].actuator, np.concatenate([motion.command for motion in motions])
     ways = {float(sign) for motion in motions for sign in np.unique(motion.direction) if sign != 0.0}
     direction = {0: "no movement", 1: "one direction"}.get(len(ways), "both directions")
     fastest = max(float(np.max(np.abs(motion.velocity), initial=0.0)) for motion in motions)
     parts = [
-        f"angle {round(lowest)} to {round(highest)} degrees",
+        f"{'angle' if actuator.motion == 'rotary' else 'position'} {place(*_span(motions), actuator.motion)}",
         direction,
         _counted(sum(motion.reversals.size for motion in motions), "reversal"),
         _counted(sum(motion.departures.size for motion in motions), "start") + " from standstill",
-        f"up to {fastest:.3g} rad/s",
-        f"duty {np.min(duty):.2f} to {np.max(duty):.2f}",
+        f"up to {fastest:.3g} {actuator.shown('rad/s')}",
+        f"{actuator.input} {np.min(command):.2f} to {np.max(command):.2f}",
     ]
-    if math.isfinite(motions[0].actuator.lower_stop):
-        pulled = any(np.any(motion.closed & (motion.duty < 0.0)) for motion in motions)
-        parts.append(f"negative duty at the closed stop: {'yes' if pulled else 'no'}")
+    if math.isfinite(actuator.lower_stop):
+        pulled = any(np.any(motion.closed & (motion.command < 0.0)) for motion in motions)
+        parts.append(f"negative {actuator.input} at the closed stop: {'yes' if pulled else 'no'}")
     return ", ".join(parts)
+
+
+def _at_limit(motion: Motion) -> Flags:
+    """Whether the input is all there is: of a duty its magnitude says so."""
+    full = np.abs(motion.command) >= 0.999 if motion.actuator.input == "duty" else np.zeros(motion.time.size)
+    return np.asarray(full, dtype=np.bool_)
 
 
 def _counted(number: int, noun: str) -> str:

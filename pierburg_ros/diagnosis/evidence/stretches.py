@@ -35,9 +35,6 @@ def restarted(data: Data, length: float) -> Data:
 
 
 def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
-    """The parts of a run; one that begins again and again anyway stays whole."""
-    if run.shooting is not None:
-        return [run]
     number = np.floor((run.time - run.time[0]) / length + 1e-9).astype(int)
     cuts = np.flatnonzero(np.diff(number, prepend=-1))
     stretches = []
@@ -45,16 +42,19 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
         if last - first < SETTLED:
             continue
         part = run.part(slice(int(first), int(last)))
-        stretches.append(replace(part, start=_start(run, motion, int(first))))
+        stretches.append(replace(part, start=_start(run, motion, int(first)), shooting=None))
     return stretches
 
 
 def _start(run: Run, motion: Motion, sample: int) -> InitialState:
     """What the samples around `sample` say: their mean while the shaft stands still, with its velocity as it moves."""
-    if sample == 0:
+    if sample == 0 and run.shooting is None:
         return run.start
     near = slice(max(sample - SETTLED, 0), sample + SETTLED + 1)
     middle = float(np.mean(run.time[near])) - float(run.time[sample])
     stands = motion.closed[sample] or motion.open[sample] or not motion.moving[sample]
+    if run.quantity == "speed":
+        return InitialState(float(run.measured[sample]), 0.0, run.start.noise, True, float(motion.angle[sample]))
     rate = 0.0 if stands else float(motion.velocity[sample]) / motion.angle_per_unit
-    return InitialState(float(np.mean(run.measured[near])) - rate * middle, rate, run.start.noise, True)
+    level = float(np.mean(run.measured[near])) - rate * middle
+    return InitialState(level, rate, run.start.noise, True, float(motion.angle[sample]))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
+from pierburg_ros.diagnosis.search.search import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -19,6 +20,7 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.workers import workers
 
 ONE_SIDED = 2.71
 """Rise of chi2 at a strength that is excluded with 95 %, to one side. Derived: the square of 1.645, the 95 % quantile
@@ -70,7 +72,13 @@ class _Case:
         return {**self.start, self.parameter: value / factor if self.above else value * factor}
 
 
-def limits(found: Found, final: Fit, pool: Executor, progress: Callable[[str], None] = lambda _: None) -> list[Limit]:
+def limits(
+    found: Found,
+    final: Fit,
+    progress: Progress = lambda _: None,
+    jobs: int | None = None,
+    deadline: Deadline | None = None,
+) -> list[Limit]:
     """The limit of every effect that `final` does not name, where these recordings set one.
 
     The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
@@ -86,13 +94,14 @@ def limits(found: Found, final: Fit, pool: Executor, progress: Callable[[str], N
         return case, _linear(estimator, base, case)
 
     weakest: dict[tuple[str, str], tuple[_Case, float]] = {}
-    for case, factor in pool.map(limit, cases):
-        key = case.variant.effect, case.parameter
-        known = weakest.get(key)
-        if known is None or _strength(case, factor) > _strength(*known):
-            weakest[key] = case, factor
-    confirmed = pool.map(lambda pair: _confirmed(estimator, base, *pair), weakest.values())
-    return [limit for limit in confirmed if limit is not None]
+    with workers(jobs, deadline) as pool:
+        for case, factor in pool.map(limit, cases):
+            key = case.variant.effect, case.parameter
+            known = weakest.get(key)
+            if known is None or _strength(case, factor) > _strength(*known):
+                weakest[key] = case, factor
+        confirmed = pool.map(lambda pair: _confirmed(estimator, base, *pair), weakest.values())
+        return [limit for limit in confirmed if limit is not None]
 
 
 def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
@@ -21,7 +21,7 @@ valve; it decides a word."""
 PLACE = 0.09
 """Share of the travel within which the shaft is near one angle. Chosen: 8 degrees for the valve; it decides a word."""
 PRESSING = 0.01
-"""Duty from which the motor is said to press against a stop. Chosen: it decides a word."""
+"""Share of a large input from which the motor is said to press against a stop. Chosen: it decides a word."""
 
 
 def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, float]]) -> list[Location]:
@@ -58,8 +58,8 @@ def _samples(motion: Motion, start: float, end: float) -> NDArray[np.intp]:
 
 
 def _standing(motion: Motion, inside: NDArray[np.intp]) -> str:
-    duty = float(np.median(motion.duty[inside]))
-    for end, on, push in (("closed", motion.closed, -duty), ("open", motion.open, duty)):
+    effort = float(np.median(motion.effort[inside]))
+    for end, on, push in (("closed", motion.closed, -effort), ("open", motion.open, effort)):
         if on[inside].mean() > 0.5:
             how = "pressed against" if push > PRESSING else "resting on"
             return f"{how} the {end} stop"
@@ -78,7 +78,7 @@ def _departing(motion: Motion, inside: NDArray[np.intp]) -> str | None:
     for end, on in (("closed", motion.closed), ("open", motion.open)):
         if on[before]:
             pulled = end == "closed" and _pulled_before(motion, first)
-            return f"leaving the {end} stop" + (" after negative duty" if pulled else "")
+            return f"leaving the {end} stop" + (f" after negative {motion.actuator.input}" if pulled else "")
     turned = bool(np.isin(motion.reversals, begins).any())
     what = "reversal" if turned else "first movement after standstill"
     return f"{what}, {_way(motion, first)} {_near(motion, np.array([first]))}"
@@ -101,9 +101,9 @@ def _travelling(motion: Motion, inside: NDArray[np.intp]) -> str:
 
 
 def _pulled_before(motion: Motion, first: int) -> bool:
-    """Whether the duty was negative at rest just before sample `first`."""
+    """Whether the input was negative at rest just before sample `first`."""
     recent = (motion.time >= motion.time[first] - RECENT * motion.scales.time) & (motion.time < motion.time[first])
-    return bool(np.any(recent & ~motion.moving & (motion.duty < -PRESSING)))
+    return bool(np.any(recent & ~motion.moving & (motion.effort < -PRESSING)))
 
 
 def _way(motion: Motion, sample: int) -> str:
@@ -111,10 +111,11 @@ def _way(motion: Motion, sample: int) -> str:
 
 
 def _near(motion: Motion, inside: NDArray[np.intp]) -> str:
-    lowest, highest = (math.degrees(f(motion.angle[inside])) for f in (np.min, np.max))
-    if highest - lowest < math.degrees(PLACE * motion.scales.angle):
-        return f"near {round((lowest + highest) / 2)} degrees"
-    return f"between {round(lowest)} and {round(highest)} degrees"
+    lowest, highest = (float(f(motion.angle[inside])) for f in (np.min, np.max))
+    if highest - lowest < PLACE * motion.scales.angle:
+        middle = (lowest + highest) / 2
+        return f"near {place(middle, middle, motion.actuator.motion)}"
+    return f"between {place(lowest, highest, motion.actuator.motion).replace(' to ', ' and ')}"
 
 
 def _reach(motion: Motion, inside: NDArray[np.intp]) -> str:

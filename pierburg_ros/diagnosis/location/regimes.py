@@ -1,4 +1,4 @@
-"""Where in state space a mismatch is: ranges of angle, velocity, duty and times in which it gathers."""
+"""Where in state space a mismatch is: ranges of angle, velocity, input and times in which it gathers."""
 
 from __future__ import annotations
 
@@ -30,6 +30,8 @@ UNITS = {
     "angle": "rad",
     "velocity": "rad/s",
     "duty": "1",
+    "current": "A",
+    "torque": "N.m",
     "time_at_rest": "s",
     "time_since_reversal": "s",
     "time_since_start": "s",
@@ -64,7 +66,9 @@ def regimes(motion: Motion, residual: Signal, seed: int = 0) -> list[Regime]:
     orders = [_shuffled(time, length, random) for _ in range(SHUFFLES)]
     found = []
     for name, values in variables(motion).items():
-        regime = _regime(name, values[first + count // 2], energy, count / place.size, orders)
+        regime = _regime(
+            name, motion.actuator.shown(UNITS[name]), values[first + count // 2], energy, count / place.size, orders
+        )
         if regime is not None:
             found.append(regime)
     return sorted(found, key=lambda regime: regime.share_of_time - regime.share_of_residual)
@@ -75,7 +79,7 @@ def variables(motion: Motion) -> dict[str, Signal]:
     values = {
         "angle": motion.angle,
         "velocity": motion.velocity,
-        "duty": motion.duty,
+        motion.actuator.input: motion.command,
         "time_at_rest": motion.time_at_rest,
         "time_since_reversal": motion.time_since_reversal,
         "time_since_start": motion.time,
@@ -107,7 +111,7 @@ def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArr
 
 
 def _regime(
-    name: str, values: Signal, energy: Signal, weight: Signal, orders: Sequence[NDArray[np.intp]]
+    name: str, unit: str, values: Signal, energy: Signal, weight: Signal, orders: Sequence[NDArray[np.intp]]
 ) -> Regime | None:
     """The range of `values` in which `energy` gathers, None where by chance or not at all; `weight` is time."""
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
@@ -126,7 +130,7 @@ def _regime(
     return Regime(
         variable=name,
         range=(float(edges[best.first]), float(edges[best.last + 1])),
-        unit=UNITS[name],
+        unit=unit,
         share_of_residual=float(energy[inside].sum() / energy.sum()),
         share_of_time=float(weight[inside].sum()),
         chance=chance,

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
+from pierburg_ros.diagnosis.remainder.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.search import Progress
-from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
 from pierburg_ros.workers import workers
 
@@ -23,25 +25,41 @@ shape of practice-20 out, which made the validation error worse, and those of th
 @dataclass(frozen=True)
 class Remainder:
     """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
-    believed, by id; and the rest as a torque over angle and velocity, None where unseen data do not confirm one."""
+    believed, by id: by what recordings left out say, or by its weight beside what remains; and the rest as a torque
+    over angle and velocity, None where unseen data do not confirm one."""
 
     base: Fit
     estimates: dict[str, Estimate]
     left_out: Mapping[str, LeftOut]
+    weights: Mapping[str, Weight]
     shape: Shape | None
 
 
-def remainder(found: Found, progress: Progress = lambda _: None, jobs: int | None = None) -> Remainder:
+def unexamined(found: Found) -> Remainder:
+    """What stands where there is no time to look at what remains: the recalibrated model, and no effect."""
+    return Remainder(found.estimator.restated(found.recalibrated), {}, {}, {}, None)
+
+
+def remainder(
+    found: Found, progress: Progress = lambda _: None, jobs: int | None = None, deadline: Deadline | None = None
+) -> Remainder:
     """Physics beyond one explanation, and the shape of what is left.
 
-    Several recordings can vouch for effects that each lower the error on recordings left out; one recording
-    cannot. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
+    Several recordings vouch for effects that each lower the error on recordings left out, a single one for quantities
+    that carry most of the evidence when it is counted against what remains. What is then left is fitted as a torque
+    over angle and velocity, kept where unseen data confirm it.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
-    with workers(jobs) as pool:
+    weights: Mapping[str, Weight] = {}
+    with workers(jobs, deadline) as pool:
         if data.several:
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
+            shape = fit_shape(data, [lambda _: base.model], pool, progress)
+        elif stood := supported(data, found.nominal, pool, progress):
+            left_out, weights = {}, _by_effect(stood)
+            estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
+            base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         else:
             explanation, left_out = recalibrated.explanation, {}
@@ -50,4 +68,9 @@ def remainder(found: Found, progress: Progress = lambda _: None, jobs: int | Non
             base = estimator.at(drifted, shape.base.values)
         known = estimates(estimator, base, pool.map)
     confirmed = shape.after < CONFIRMED * shape.before
-    return Remainder(base, known, left_out, shape if confirmed else None)
+    return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
+
+
+def _by_effect(stood: Supported) -> dict[str, Weight]:
+    """The weight of each effect, by id."""
+    return {key.effect: weight for key, weight in stood.weights.items() if isinstance(key, Variant)}

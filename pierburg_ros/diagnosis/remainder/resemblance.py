@@ -43,19 +43,19 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
     reach = math.degrees(discrepancy.reach * data.noise * data.angle_per_unit)
     lasting = f"about {size} that lasts for {discrepancy.memory:.2g} s at rest and for {reach:.3g} degrees of movement"
     if share < CLEAR:
-        return f"{lasting}; it goes with none of angle, velocity, duty, turns of the motor, reversals and time"
+        return f"{lasting}; it goes with none of angle, velocity, input, turns of the motor, reversals and time"
     return f"{lasting}; {100.0 * share:.0f} % of it goes with {name}"
 
 
 def _variables(motion: Motion, data: Data) -> dict[str, Signal]:
     """What a remainder may go with, by its name in a sentence, shape (samples,)."""
-    turns = Model.nominal(data.actuator).values["gear_ratio"] * motion.angle / (2.0 * math.pi)
+    turns = Model.nominal(data.actuator).values.get("gear_ratio", 1.0) * motion.angle / (2.0 * math.pi)
     direction = np.where(motion.moving, motion.direction, 0.0)
     return {
         "the angle": motion.angle,
         "the velocity": motion.velocity,
         "the direction of movement": direction,
-        "the duty": motion.duty,
+        f"the {data.actuator.input}": motion.command,
         "the turn of the motor": np.asarray(turns % 1.0),
         "the time since the last reversal": motion.time_since_reversal,
         "the time at rest": motion.time_at_rest,

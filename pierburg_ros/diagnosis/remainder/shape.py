@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
@@ -79,7 +81,9 @@ def fit_shape(
     model = _fitted(data, base)
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
-    words = f"{described(grid['angle'], grid['velocity'], grid['torque'])}; {described_over_time(*over_time)}."
+    motion = data.actuator.motion
+    shape = described(grid["angle"], grid["velocity"], grid["torque"], motion)
+    words = f"{shape}; {described_over_time(*over_time, unit_of('N.m', motion))}."
     before, after = (rms(data.residual(m)[data.validation]) * data.noise for m in (base, model))
     return Shape(model, base, before, after, words, over_time)
 
@@ -191,27 +195,28 @@ def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
     return (edges[:-1] + edges[1:]) / 2 - run.time[0], mean
 
 
-def described(angle: Signal, velocity: Signal, torque: Signal) -> str:
+def described(angle: Signal, velocity: Signal, torque: Signal, motion: Motion = "rotary") -> str:
     """The shape in words: where it is strongest either way, and how it depends on angle and direction."""
     parts = []
+    unit, speed, way = (unit_of(declared, motion) for declared in ("N.m", "rad/s", "rad"))
     for sign, verb in ((1.0, "closes"), (-1.0, "opens")):
         row, column = np.unravel_index(int(np.argmax(sign * torque)), torque.shape)
         if sign * torque[row, column] > 0.0:
             parts.append(
-                f"{abs(torque[row, column]):#.2g} N.m that {verb} at {math.degrees(angle[row]):.0f} degrees and"
-                f" {velocity[column]:.2g} rad/s"
+                f"{abs(torque[row, column]):#.2g} {unit} that {verb} at {place(angle[row], angle[row], motion)} and"
+                f" {velocity[column]:.2g} {speed}"
             )
     opening, closing = (float(torque[:, side].mean()) for side in (velocity > 0.0, velocity < 0.0))
     drag = (opening - closing) / 2.0
     resists = "resists" if drag >= 0.0 else "drives"
     slope = float(np.polyfit(angle, torque.mean(axis=1), 1)[0]) if angle.size > 1 else 0.0
     return (
-        f"up to {' and '.join(parts) or 'nothing'}; on average {abs(drag):#.2g} N.m that {resists} the movement,"
-        f" and {slope:+#.2g} N.m per rad of opening"
+        f"up to {' and '.join(parts) or 'nothing'}; on average {abs(drag):#.2g} {unit} that {resists} the movement,"
+        f" and {slope:+#.2g} {unit} per {way} of opening"
     )
 
 
-def described_over_time(time: Signal, torque: Signal) -> str:
+def described_over_time(time: Signal, torque: Signal, unit: str = "N.m") -> str:
     """How the missing torque goes over the recording, in words."""
     known = np.isfinite(torque)
     if np.count_nonzero(known) < 4:
@@ -220,5 +225,5 @@ def described_over_time(time: Signal, torque: Signal) -> str:
     left = torque[known] - slope * time[known] - offset
     rise, scatter = float(slope * (time[-1] - time[0])), float(np.std(left))
     if abs(rise) > 2.0 * scatter:
-        return f"over the recording it {'grows' if rise > 0.0 else 'falls'} by {abs(rise):#.2g} N.m"
-    return f"over the recording it varies by {scatter:#.2g} N.m without a trend"
+        return f"over the recording it {'grows' if rise > 0.0 else 'falls'} by {abs(rise):#.2g} {unit}"
+    return f"over the recording it varies by {scatter:#.2g} {unit} without a trend"

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.actuators.units import unit_of
+from pierburg_ros.actuators.wording import place, travel_factor, travel_title
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
@@ -58,6 +60,7 @@ def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristi
 
 def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
     """Friction over velocity at the middle of the angles at which the shaft moved."""
+    motion = models["final"].actuator.motion
     fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
     middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
     # more nodes near standstill, where the law bends
@@ -70,9 +73,9 @@ def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
     points = _some(missing.velocity[inside], law + missing.torque[inside])
     return Characteristic(
         "friction",
-        f"friction at {math.degrees(middle):.0f} degrees",
-        "velocity [rad/s]",
-        "torque [N.m]",
+        f"friction at {place(middle, middle, motion)}",
+        f"velocity [{unit_of('rad/s', motion)}]",
+        f"friction [{unit_of('N.m', motion)}]",
         curves,
         points,
     )
@@ -102,9 +105,12 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
 def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Characteristic:
     """Torque of spring, weight and all else that loads the shaft over its angle."""
     nodes = np.linspace(*_travel(models["final"], angle), NODES)
-    curves = {name: (np.degrees(nodes), load_torque(model, nodes)) for name, model in models.items()}
-    points = _some(np.degrees(missing.angle), load_torque(models["final"], missing.angle) + missing.torque)
-    return Characteristic("load", "spring and load", "angle [degrees]", "torque that closes [N.m]", curves, points)
+    motion = models["final"].actuator.motion
+    drawn = travel_factor(motion)
+    curves = {name: (drawn * nodes, load_torque(model, nodes)) for name, model in models.items()}
+    points = _some(drawn * missing.angle, load_torque(models["final"], missing.angle) + missing.torque)
+    title = f"load that closes [{unit_of('N.m', motion)}]"
+    return Characteristic("load", "spring and load", travel_title(motion), title, curves, points)
 
 
 def load_torque(model: Model, angle: Signal) -> Signal:
@@ -116,17 +122,24 @@ def load_torque(model: Model, angle: Signal) -> Signal:
 def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Characteristic:
     """What the sensor shows too much by the nominal scale, over the true angle."""
     nominal, final = models["nominal"], models["final"]
+    motion = final.actuator.motion
+    drawn = travel_factor(motion)
     low, high = _travel(final, angle)
     shown = np.linspace(low, high, NODES)
     values = _values_at(nominal, shown)
     curves = {}
     for name, model in models.items():
         true = decoded(model, values)
-        curves[name] = (np.degrees(true), np.degrees(shown - true))
+        curves[name] = (drawn * true, drawn * (shown - true))
     true = decoded(final, _values_at(nominal, angle))
-    x, y = _some(np.degrees(true), np.degrees(angle - true + residual))
+    x, y = _some(drawn * true, drawn * (angle - true + residual))
     return Characteristic(
-        "sensor", "sensor: shown less true angle", "true angle [degrees]", "deviation [degrees]", curves, (x, y)
+        "sensor",
+        "sensor: shown less true place",
+        f"true {travel_title(motion)}",
+        travel_title(motion).replace("angle", "deviation").replace("position", "deviation"),
+        curves,
+        (x, y),
     )
 
 
@@ -138,7 +151,7 @@ def _values_at(model: Model, angle: Signal) -> Signal:
 
 def _plays(model: Model) -> list[Characteristic]:
     """For every play that acts: where the driven side is while the driving one goes to and fro."""
-    found = []
+    found, motion = [], model.actuator.motion
     for effect in EFFECTS:
         if effect.play is None or not effect.acts(model.values):
             continue
@@ -151,9 +164,9 @@ def _plays(model: Model) -> list[Characteristic]:
             Characteristic(
                 effect.id,
                 f"{name}: to and fro",
-                "driving side [degrees]",
-                "driven side [degrees]",
-                {"final": (np.degrees(driving), np.degrees(driven))},
+                f"driving side: {travel_title(motion)}",
+                f"driven side: {travel_title(motion)}",
+                {"final": (travel_factor(motion) * driving, travel_factor(motion) * driven)},
             )
         )
     return found

@@ -8,13 +8,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
+from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.actuators.wording import input_title, quantity_title, travel_factor, travel_title
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.report.allowed import Bar
 from pierburg_ros.diagnosis.report.places import Place
 from pierburg_ros.diagnosis.report.tried import title
 from pierburg_ros.diagnosis.result import Characteristic, Tried, View
 from pierburg_ros.diagnosis.schema import Diagnosis, ResidualTorque
-from pierburg_ros.pages.over_time import COLOURS, OTHERS, Curve, Panel, Span, finished, label, over_time
+from pierburg_ros.pages.over_time import COLOURS, OTHERS, Curve, Panel, Span, finished, over_time
 
 MEANINGS = {
     "measured": "measured",
@@ -56,11 +58,14 @@ def time_figure(
     before = [own["nominal"][1], own["recalibrated"][1], *(pair[1] for pair in others)]
     band = None if noise is None else 1.96 * noise
     panels = [
-        Panel("measured and simulated", label(diagnosis.quantity, unit), signals, 0.34),
+        Panel("measured and simulated", quantity_title(diagnosis.quantity, unit), signals, 0.34),
         Panel("error of what is switched on", f"error [{unit}]", before, 0.24, band),
         Panel("error of the diagnosed model; grey: noise", f"error [{unit}]", [own["final"][1]], 0.24, band),
         Panel(
-            "input", "input", [Curve("input", "input", "input", (f"{prefix}/command", view.command), steps=True)], 0.18
+            "input",
+            driving_title(diagnosis),
+            [Curve("input", "input", "input", (f"{prefix}/command", view.command), steps=True)],
+            0.18,
         ),
     ]
     spans = [
@@ -75,9 +80,14 @@ def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Fig
     """Signals, errors and input of the first recording over time, the located windows shaded and numbered."""
     errors = {key: signals["measured"] - signals[key] for key in ("nominal", "recalibrated", "final")}
     nothing = np.zeros(0)
-    view = View("", signals["time"], signals["measured"], signals["duty"], nothing, nothing, errors)
+    view = View("", signals["time"], signals["measured"], signals["command"], nothing, nothing, errors)
     places = [Place(each.start, each.end, each.share, each.regime) for each in diagnosis.locations]
     return time_figure(diagnosis, view, (), places, "0")
+
+
+def driving_title(diagnosis: Diagnosis) -> str:
+    """Title of the axis of the input: a duty is a share, and has no unit."""
+    return "duty" if diagnosis.input == "duty" else input_title(diagnosis.input, diagnosis.motion)
 
 
 def autocorrelation_figure(views: Sequence[View]) -> go.Figure:
@@ -106,10 +116,11 @@ def autocorrelation(views: Sequence[View], key: str) -> tuple[Signal, Signal, in
     return interval * shown, correlation[shown], sum(view.time.size for view in views)
 
 
-def state_figure(views: Sequence[View], over: str, unit: str) -> go.Figure:
+def state_figure(views: Sequence[View], over: str, unit: str, motion: Motion) -> go.Figure:
     """Both errors over the `angle` or the `velocity` of all recordings."""
     plot = go.Figure()
-    factor, title = (math.degrees(1.0), "angle [degrees]") if over == "angle" else (1.0, "velocity [rad/s]")
+    factor = travel_factor(motion) if over == "angle" else 1.0
+    title = travel_title(motion) if over == "angle" else f"velocity [{unit_of('rad/s', motion)}]"
     state = np.concatenate([getattr(view, over) for view in views])
     for key in ("recalibrated", "final"):
         error = np.concatenate([view.errors[key] for view in views])
@@ -162,11 +173,11 @@ def horizons_figure(horizons: Mapping[str, Sequence[float | None]], names: Seque
     return finished(plot, 320)
 
 
-def torque_figure(residual: ResidualTorque) -> go.Figure:
+def torque_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Figure:
     """The residual torque over angle and velocity."""
     largest = float(np.max(np.abs(residual.torque)))
     surface = go.Contour(
-        x=[math.degrees(angle) for angle in residual.angle],
+        x=[travel_factor(motion) * angle for angle in residual.angle],
         y=residual.velocity,
         z=np.transpose(residual.torque),
         colorscale="RdBu_r",
@@ -174,19 +185,20 @@ def torque_figure(residual: ResidualTorque) -> go.Figure:
         zmax=largest,
         contours_coloring="heatmap",
         line_width=0.5,
-        colorbar={"title": {"text": "N.m"}, "thickness": 12},
+        colorbar={"title": {"text": unit_of("N.m", motion)}, "thickness": 12},
     )
     plot = go.Figure(surface)
-    plot.update_xaxes(title_text="angle [degrees]").update_yaxes(title_text="velocity [rad/s]")
+    plot.update_xaxes(title_text=travel_title(motion))
+    plot.update_yaxes(title_text=f"velocity [{unit_of('rad/s', motion)}]")
     return finished(plot, 360)
 
 
-def trend_figure(residual: ResidualTorque) -> go.Figure:
+def trend_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Figure:
     """The missing torque over time."""
     over = residual.over_time
     assert over is not None
     plot = go.Figure(_line(over.time, over.torque, "missing torque", "final").update(mode="lines+markers"))
-    plot.update_xaxes(title_text="time [s]").update_yaxes(title_text="mean missing torque [N.m]")
+    plot.update_xaxes(title_text="time [s]").update_yaxes(title_text=f"mean missing load [{unit_of('N.m', motion)}]")
     return finished(plot, 360)
 
 

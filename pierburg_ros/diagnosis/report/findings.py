@@ -53,8 +53,10 @@ from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 
 
-def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit]) -> Diagnosis:
-    """The whole document."""
+def document(
+    found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit], stopped: bool = False
+) -> Diagnosis:
+    """The whole document; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
@@ -66,8 +68,11 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequen
         recordings=list({run.number: run.name for run in data.runs}.values()),
         quantity=actuator.quantity,
         unit=actuator.unit,
+        input=actuator.input,
+        motion=actuator.motion,
         verdict=conclusion.verdict,
-        summary=words.cautioned(short, words.warned(data, conclusion.verdict, text)),
+        summary=words.cautioned(short, words.warned(data, conclusion.verdict, words.provisional(text, stopped))),
+        stopped=stopped,
         effects=named,
         parameters=parameters_found,
         changes=changed,
@@ -76,25 +81,25 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Sequen
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
-        ruled_out=[ruled_out(limit) for limit in limits],
+        ruled_out=[ruled_out(limit, actuator) for limit in limits],
         remaining=remaining(data, conclusion, parts),
         excluded=excluded(data),
         cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise),
-        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short),
+        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
     )
 
 
 def effects(conclusion: Conclusion, parts: Shares) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    final = conclusion.final
+    final, unit = conclusion.final, conclusion.final.model.actuator.shown
     found = []
     for variant in final.explanation.variants:
         declared = EFFECT[variant.effect]
         values = {name: final.model.values[f"{variant.effect}.{name}"] for name in declared.names}
         parameters = {
-            name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], declared.parameter(name).unit)
+            name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], unit(declared.parameter(name).unit))
             for name in declared.names
             if name in variant.free or values[name] != 0.0
         }
@@ -141,7 +146,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=found.nominal.values[name],
             value=final.model.values[name],
-            unit=actuator.parameters[name].unit,
+            unit=actuator.shown(actuator.parameters[name].unit),
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
@@ -220,9 +225,9 @@ def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
     ]
 
 
-def ruled_out(limit: Limit) -> RuledOut:
+def ruled_out(limit: Limit, actuator: Actuator) -> RuledOut:
     """A strength that is excluded, with its unit."""
-    unit = EFFECT[limit.effect].parameter(limit.parameter).unit
+    unit = actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
     side = {"above" if limit.above else "below": limit.value}
     return RuledOut(id=limit.effect, parameter=limit.parameter, unit=unit, **side)
 
@@ -288,12 +293,12 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
 
 
 def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
-    """Time [s], measured, duty, and what the three models make of a run, each (samples,)."""
+    """Time [s], measured, command, and what the three models make of a run, each (samples,)."""
     place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
     return {
         "time": run.time,
         "measured": run.measured,
-        "duty": run.inputs.command[place],
+        "command": run.inputs.command[place],
         "nominal": run.simulated(conclusion.nominal.model),
         "recalibrated": run.simulated(conclusion.recalibrated.model),
         "final": run.simulated(conclusion.model, conclusion.final.switch),

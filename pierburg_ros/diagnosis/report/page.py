@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pierburg_ros.actuators.units import Motion
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.report import figures
 from pierburg_ros.diagnosis.report.allowed import bars
@@ -55,7 +56,7 @@ def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Se
         "significant": SIGNIFICANT,
         "shown": 12,  # rows of a table; the others are folded away
         "over_time": time_plots(diagnosis, views, exhibits.tried),
-        "residuals": residual_plots(views, diagnosis.unit),
+        "residuals": residual_plots(views, diagnosis.unit, diagnosis.motion),
         "laws": law_plots(result),
         "torques": torque_plots(diagnosis),
         "limits": limit_plots(result),
@@ -83,15 +84,15 @@ def time_plots(diagnosis: Diagnosis, views: Sequence[View], tried: Sequence[Trie
     return plots
 
 
-def residual_plots(views: Sequence[View], unit: str) -> list[Plot]:
+def residual_plots(views: Sequence[View], unit: str, motion: Motion) -> list[Plot]:
     """What both errors repeat over time, and where in the state they are."""
     if not views:
         return []
     repeated = "Autocorrelation of the errors; that of white noise is within the grey band"
     return [
         Plot("autocorrelation", figures.autocorrelation_figure(views), repeated, 320),
-        Plot("over-angle", figures.state_figure(views, "angle", unit), "Errors over the angle", 320),
-        Plot("over-velocity", figures.state_figure(views, "velocity", unit), "Errors over the velocity", 320),
+        Plot("over-angle", figures.state_figure(views, "angle", unit, motion), "Errors over the angle", 320),
+        Plot("over-velocity", figures.state_figure(views, "velocity", unit, motion), "Errors over the velocity", 320),
     ]
 
 
@@ -106,9 +107,18 @@ def torque_plots(diagnosis: Diagnosis) -> list[Plot]:
     residual = diagnosis.residual_torque
     if residual is None:
         return []
-    plots = [Plot("torque-map", figures.torque_figure(residual), "Missing load torque over angle and velocity", 360)]
+    plots = [
+        Plot(
+            "torque-map",
+            figures.torque_figure(residual, diagnosis.motion),
+            "Missing load torque over angle and velocity",
+            360,
+        )
+    ]
     if residual.over_time is not None:
-        plots.append(Plot("torque-trend", figures.trend_figure(residual), "Missing load torque over time", 360))
+        plots.append(
+            Plot("torque-trend", figures.trend_figure(residual, diagnosis.motion), "Missing load torque over time", 360)
+        )
     return plots
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
@@ -14,14 +15,21 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.pages import numbers
 
 SEPARATES = {
-    "armature_resistance": "measure the motor resistance at standstill, or log the motor current",
-    "torque_constant": "log the motor current",
-    "supply_voltage": "log the supply voltage",
-    "spring_preload": "run against both stops and return at duty 0",
-    "spring_stiffness": "run against both stops",
+    "armature_resistance": "measure the motor's resistance at standstill",
+    "torque_constant": "measure the motor's voltage while it is turned at a known speed",
+    "supply_voltage": "log the supply voltage as supply_voltage",
     "coulomb_friction": "move slowly in both directions over the same angles",
 }
 """What tells a base parameter from what looks like it."""
+AT_STOPS = {
+    "spring_preload": "run against both stops and return at duty 0",
+    "spring_stiffness": "run against both stops",
+}
+"""The same, where there are stops."""
+HELD = "measure one of them by other means"
+"""The same, for any that these do not help."""
+HOLD = "Hold what was measured: its value as nominal with `free: false` in the actuator's description."
+"""What to do with a number that was measured by other means."""
 
 
 def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
@@ -49,6 +57,8 @@ def reason(support: Support, unit: str) -> str:
     """Why an effect is believed; `unit` is the measured one."""
     if support.left_out is not None:
         return by_recordings_left_out(support.left_out, unit)
+    if support.weight is not None:
+        return by_weight(support.weight)
     return by_grid() if support.gain is None else by_evidence(support.gain)
 
 
@@ -57,6 +67,14 @@ def by_evidence(gain: float) -> str:
     return (
         f"Without it the best explanation of the same size leaves {gain:,.0f} more in chi-squared, counted in "
         "independent samples."
+    )
+
+
+def by_weight(weight: Weight) -> str:
+    """Why an effect is named although something remains."""
+    return (
+        f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
+        f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
     )
 
 
@@ -108,7 +126,8 @@ def summary(
     also = f" Besides: {'; '.join(drifts)}." if drifts else ""
     if verdict == "missing_physics":
         return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
-    helped = f" What helps on recordings left out is {_listed([e.id for e in effects])}. {named}" if effects else ""
+    listed = _listed([effect.id for effect in effects])
+    helped = f" What the recordings support all the same is {listed}. {named}{also}" if effects else ""
     return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
 
 
@@ -127,6 +146,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     return f"{warning} {text}"
 
 
+def provisional(text: str, stopped: bool) -> str:
+    """The summary, marked where the search had to end before it was done."""
+    return f"Stopped before all was tried; this is the best verdict yet. {text}" if stopped else text
+
+
 def cautioned(limits: Sequence[Limit], text: str) -> str:
     """The summary, or, where the recordings cannot decide anything, why not."""
     decisive = [limit.finding for limit in limits if limit.decisive]
@@ -139,25 +163,28 @@ def advice(
     parameters: Mapping[str, BaseParameter],
     hidden: Sequence[NotTestable],
     limits: Sequence[Limit],
+    stops: bool = True,
 ) -> list[str]:
-    """What to record next, most useful first."""
+    """What to record next, most useful first; `stops`: whether the actuator has any to run against."""
     steps = [limit.record for limit in limits]
     for effect in effects:
         for tie in effect.indistinguishable_from:
-            steps.append(_separating(effect.id, tie))
+            steps.append(_separating(effect.id, tie, stops))
     for name, parameter in parameters.items():
         for tie in parameter.indistinguishable_from:
-            steps.append(_separating(name, tie))
+            steps.append(_separating(name, tie, stops))
     if verdict == "unexplained":
         steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
-    steps += [f"To see {item.id}: {item.record}." for item in hidden]
+    steps += [f"To see {numbers.words(item.id)}: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
 
 
-def _separating(name: str, tie: Sequence[str]) -> str:
-    means = [SEPARATES[item] for item in (name, *tie) if item in SEPARATES]
+def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
+    known = {**SEPARATES, **(AT_STOPS if stops else {})}
+    means = [known[item] for item in (name, *tie) if item in known]
     means += [EFFECT[item].record for item in (name, *tie) if item in EFFECT]
-    return f"To tell {name} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means))}."
+    text = f"To tell {numbers.words(name)} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means)) or HELD}."
+    return f"{text} {HOLD}" if "measure" in text else text
 
 
 def _either(ties: Sequence[Sequence[str]]) -> str:

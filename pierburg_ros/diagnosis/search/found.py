@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import qr
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
@@ -21,6 +23,9 @@ from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
+GROWING = 0.7
+"""Share of the time that the search may take; the rest is for last values, what remains, and limits. Chosen: without a
+limit these took 5 to 40 % of it; not varied."""
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
 Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
@@ -32,7 +37,7 @@ class Found:
 
     `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
     name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
-    because its budget was spent.
+    because its budget of candidates was spent.
     """
 
     data: Data
@@ -61,37 +66,73 @@ def search(
     progress: Progress = lambda _: None,
     jobs: int | None = None,
     beam: Beam | None = None,
+    deadline: Deadline | None = None,
 ) -> Found:
     """Search what `nominal` lacks in `data`, `jobs` fits at a time.
 
-    Where an effect shows only in samples that validate, the search is made again with these training as well.
+    Where an effect shows only in samples that validate, the search is made again with these training as well. At the
+    `deadline`, or after Ctrl-C, what has been found by then is taken.
     """
+    deadline = deadline or Deadline()
+    growing = deadline.part(GROWING)
+    tell, begun = _checked(progress, growing), list[Search]()
+    done = growing.attempt(lambda: _grown(data, nominal, tell, jobs, beam, growing, begun), None)
     with workers(jobs) as pool:
+        found = done or (begun[0] if begun else Search(data, nominal, pool))
+        found.progress = progress
+        chosen = found.preferred() if found.fits else found.add(Explanation())
+        recalibrated = _recalibrated(found, pool)
+    final, known = chosen, dict[str, Estimate]()
+    if chosen.ratio <= EXPLAINED:
+        final, known = deadline.attempt(lambda: _last_values(found, chosen, jobs, deadline), (final, known))
+    fits = dict(found.fits)
+    return Found(found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted)
+
+
+def _grown(
+    data: Data,
+    nominal: Model,
+    progress: Progress,
+    jobs: int | None,
+    beam: Beam | None,
+    deadline: Deadline,
+    begun: list[Search],
+) -> Search:
+    """The search with its rivals fitted; each search is added to those `begun` at once, for who cannot wait."""
+    with workers(jobs, deadline) as pool:
         found = Search(data, nominal, pool, progress, beam)
+        begun.append(found)
         if overlooks(found.run(), found.whole):
             found = Search(with_validation(data), nominal, pool, progress, beam)
             found.run()
         fit_rivals(found, found.preferred())
-        chosen = found.preferred()
-        final, known = _last_values(found, chosen) if chosen.ratio <= EXPLAINED else (chosen, {})
-        recalibrated = _recalibrated(found)
-    return Found(found.data, nominal, found.drifts, found.fits, chosen, final, known, recalibrated, found.exhausted)
+    return found
 
 
-def _last_values(found: Search, chosen: Fit) -> tuple[Fit, dict[str, Estimate]]:
+def _checked(progress: Progress, deadline: Deadline) -> Progress:
+    """`progress` that ends with the time."""
+
+    def tell(tried: str) -> None:
+        deadline.check()
+        progress(tried)
+
+    return tell
+
+
+def _last_values(found: Search, chosen: Fit, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
     Where events jump, other local minima are searched: a fit may reach the noise in one that is not the lowest.
     """
     estimator = Estimator(with_validation(found.data), found.nominal)
     fit = estimator.fit(chosen.explanation, chosen.values)
-    found.progress(f"{fit.explanation.label}, last values")
-    if jumps(fit.explanation):
-        fit = refined(estimator, fit)
-    return fit, estimates(estimator, fit, found.pool.map)
+    with workers(jobs, deadline) as pool:
+        if jumps(fit.explanation):
+            fit = next(iter(pool.map(lambda fit: refined(estimator, fit), [fit])))
+        return fit, estimates(estimator, fit, pool.map)
 
 
-def _recalibrated(found: Search) -> Fit:
+def _recalibrated(found: Search, pool: Executor) -> Fit:
     """The nominal structure with as many of its parameters re-estimated as the recordings tell apart."""
     nominal = found.whole.at(Explanation(found.drifts))
     marks = nominal.solution.jacobian / np.maximum(np.linalg.norm(nominal.solution.jacobian, axis=0), 1e-12)
@@ -99,6 +140,6 @@ def _recalibrated(found: Search) -> Fit:
     count = int(np.sum(np.abs(np.diag(triangle)) > INDEPENDENT))
     names = {found.drifts[index] for index in order[:count]}
     explanation = Explanation(tuple(name for name in found.drifts if name in names))
-    drifts = (fit for fit in found.fits.values() if not fit.explanation.variants and not fit.explanation.changed)
+    drifts = (fit for fit in list(found.fits.values()) if not fit.explanation.variants and not fit.explanation.changed)
     starts = [found.nominal.values, min(drifts, key=lambda fit: fit.chi2).values]
-    return min(found.pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2)
+    return min(pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2)

@@ -77,10 +77,9 @@ def overlooks(fit: Fit, estimator: Estimator) -> bool:
 
 
 def allowance(fit: Fit, data: Data) -> float:
-    """Chi2 by which two simulations of an explanation may differ; without an effect they agree."""
-    if not fit.explanation.variants:
-        return 0.0
-    return float(fit.solution.residual.size * (FORMULATION * data.scales.reading / data.noise) ** 2)
+    """Chi2 by which two simulations of an explanation may differ; without an effect ours and the textbook's agree."""
+    formulation = FORMULATION * data.scales.reading if fit.explanation.variants else 0.0
+    return float(fit.solution.residual.size * (formulation**2 + data.unlike**2) / data.noise**2)
 
 
 def alike(best: Fit) -> float:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
@@ -25,12 +26,14 @@ class Support:
     """How far an effect is believed, between 0 and 1, and the numbers that speak for it.
 
     `gain` is what the best explanation without it lacks in chi2, in effective samples; `left_out` what recordings left
-    out of the fit say. Both are None where the effect is seen in the samples themselves.
+    out of the fit say; `weight` what it carries where something remains. All are None where the effect is seen in the
+    samples themselves.
     """
 
     confidence: float
     gain: float | None = None
     left_out: LeftOut | None = None
+    weight: Weight | None = None
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,7 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
     verdict, nominal = verdict_on(found.chosen), found.fits[Explanation()]
     if rest is not None:
         supports = {effect: _by_recordings(left_out) for effect, left_out in rest.left_out.items()}
+        supports.update({effect: Support(weight.carried, weight=weight) for effect, weight in rest.weights.items()})
         base = rest.base
         return Conclusion(verdict, base, base, nominal, found.recalibrated, [], rest.estimates, supports, rest.shape)
     chosen, final = found.chosen, found.final

@@ -7,9 +7,9 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pierburg_ros.actuators.wording import quantity_title
 from pierburg_ros.identification.experiment.discriminate import DETECTABLE, Design
 from pierburg_ros.identification.experiment.excitation import purpose
-from pierburg_ros.pages.over_time import label
 from pierburg_ros.recording.recording import UNITS
 
 
@@ -49,7 +49,7 @@ def write_picture(path: Path, design: Design, names: tuple[str, str], quantity: 
     apart = design.first_answer - design.second_answer
     difference.plot(design.time, apart, color="black", linewidth=0.8)
     duty.step(design.time, 100.0 * design.duty, where="post", color="#2ca02c", linewidth=0.8)
-    answer.set_ylabel(label(quantity, UNITS[quantity]))
+    answer.set_ylabel(quantity_title(quantity, UNITS[quantity]))
     difference.set_ylabel("difference")
     duty.set(ylabel="duty [%]", xlabel="time [s]")
     figure.savefig(path, dpi=120)

@@ -26,6 +26,11 @@ class DutyRange:
     @staticmethod
     def of(model: Model) -> DutyRange:
         """From the lumps of a spring-loaded model, or for a pendulum up to 60 degrees of deflection."""
+        if model.actuator.drive != "voltage" or model.actuator.load == "none":
+            raise InputError(
+                f"Actuator {model.actuator.name} has drive {model.actuator.drive} and load {model.actuator.load}; the "
+                "recipes are duties against a spring or a weight. Give an input of your own."
+            )
         if model.actuator.load == "spring":
             lump = lumps(model)
             low = (lump["preload_angle"] + lump["friction_angle"]) / lump["gain"]

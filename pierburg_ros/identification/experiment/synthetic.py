@@ -22,4 +22,7 @@ def synthetic_recording(
     clean = simulate(model, Inputs(changes.time, changes.values), time)
     refuse_unsimulated(model, clean, time)
     measured = clean + noise * np.random.default_rng(seed).standard_normal(time.size)
-    return Recording(name, model.actuator.quantity, time - time[0], measured, changes, time_source="publish")
+    actuator = model.actuator
+    return Recording(
+        name, actuator.quantity, time - time[0], measured, changes, time_source="publish", input=actuator.input
+    )

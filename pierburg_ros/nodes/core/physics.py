@@ -81,6 +81,11 @@ class Physics:
 def chosen_model(actuator: str, path: str) -> Model:
     """The model of a file, or the nominal one of an actuator where no file is named."""
     model = read_model(path) if path else Model.nominal(read_actuator(actuator))
+    if model.actuator.drive != "voltage":
+        raise InputError(
+            f"Actuator {model.actuator.name} is driven by a {model.actuator.input}; the plant needs one that is driven "
+            "by a duty. Use 'pierburg simulate' for this one."
+        )
     if model.actuator.quantity != "hall_voltage":
         raise InputError(
             f"Actuator {model.actuator.name} measures its {model.actuator.quantity}; the plant needs one "
@@ -99,4 +104,4 @@ def declaration(model: Model, name: str) -> Declaration:
     else:
         base = model.actuator.parameters[name]
         meaning, unit = base.meaning, base.unit
-    return Declaration(name, float(model.values[name]), meaning, unit, minimum, maximum)
+    return Declaration(name, float(model.values[name]), meaning, model.actuator.shown(unit), minimum, maximum)

@@ -22,9 +22,9 @@ OVERHEAD = 80
 MOST_KEPT = 1 << 30
 """Bytes of messages kept at most, half of the 2 GiB that a command may take; the arrays made of them have the rest.
 It is 3 h at 1 kHz of all the topics that are read."""
-LONGEST = 1 << 16
-"""Bytes of a message that is kept: no larger one, as a picture or a cloud of points, holds a signal of an actuator. Of
-those the times are kept."""
+LONGEST = 1 << 14
+"""Bytes of a message that is kept: 2,000 numbers. Of larger ones, as pictures and clouds of points, the times are kept,
+so that a camera beside an actuator does not take the memory."""
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
 TIME_KEYS = ("topic", "field", "column", "unit")
 TIME_UNITS = ("s", "ms", "us", "ns")
 FORM = "expected {topic: /name, field: path} or {column: name}, with unit, scale, offset and sign where needed"
-BARE_PATH = re.compile(r"(\bfield:[ \t]+)([A-Za-z][\w.]*(?:\[[^\[\]'\"\n]*\][\w.]*)+)(?=[ \t]*[,}])")
-"""A path with brackets and without quotes between braces, where YAML would begin a list: it is read as it is meant."""
+BARE = re.compile(r"(?P<key>\b(?:field|column|topic):[ \t]+)(?P<name>[^\s'\"\[{,}][^'\"{},\n]{0,300})(?=[,}])")
+"""A name or a path between braces and without quotes."""
 LARGEST = 1e12
 """Largest magnitude of a scale, and with 1 over it the smallest: from pico to tera."""
 MOST_FILES = 1000
@@ -55,7 +55,7 @@ def read_signal_map(given: str | Path | Mapping[str, Any]) -> SignalMap:
     if isinstance(given, Mapping):
         name, document = "signals", Document(dict(given), None)
     else:
-        name, text = str(given), BARE_PATH.sub(r'\1"\2"', text_of(given, "a signal map"))
+        name, text = str(given), BARE.sub(quoted, text_of(given, "a signal map"))
         document = parsed(text, name, "a signal map")
     content = document.content
     if not isinstance(content, dict) or not content:
@@ -75,6 +75,12 @@ def read_signal_map(given: str | Path | Mapping[str, Any]) -> SignalMap:
     return SignalMap(sources, time, frozenset(left_out))
 
 
+def quoted(bare: re.Match[str]) -> str:
+    """The same with quotes where it holds a bracket: YAML would begin a list there, and a person means the name."""
+    name = bare["name"].rstrip()
+    return f'{bare["key"]}"{name}"' if "[" in name and "\\" not in name else bare[0]
+
+
 class Entry:
     """What a map gives for one signal, checked."""
 
@@ -89,9 +95,10 @@ class Entry:
         """Where the signal comes from."""
         self.check_keys(KEYS)
         kind = self.kind()
-        unit, scale = self.unit(SIGNALS[self.signal].units), self.number("scale", 1.0, LARGEST)
+        wanted = SIGNALS[self.signal].units
+        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST)
         if unit.written == COUNTS and "scale" not in self.given:
-            raise self.wrong("unit", COUNTS, f"a scale too, in {SIGNALS[self.signal].units[0]} per count")
+            raise self.wrong("unit", COUNTS, f"a scale too, in {wanted[0]} per count")
         if scale == 0.0 or abs(scale) < 1.0 / LARGEST:
             raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST:g}")
         return Source(
@@ -104,6 +111,7 @@ class Entry:
             self.sign(),
             self.files(),
             self.origin,
+            "" if unit.written in (COUNTS, "1") else next(each for each in wanted if unit.measures(each)),
         )
 
     def time(self) -> TimeSource:

@@ -16,7 +16,8 @@ from pierburg_ros.recording.signals import SIGNALS
 class Source:
     """A topic or a column: value = sign * unit * scale * raw + offset, in SI.
 
-    `kind` is topic, column, or either where only a name was given. `files` are the parts of a table, in order, in
+    `kind` is topic, column, or either where only a name was given. `measures` is the unit of SI of what the written
+    unit measures, rad or m; empty for counts and where none is written. `files` are the parts of a table, in order, in
     which the column stands; none for the recording itself. `origin` says where all of it was written.
     """
 
@@ -29,6 +30,7 @@ class Source:
     sign: int = 1
     files: tuple[str, ...] = ()
     origin: str = "--topic"
+    measures: str = ""
 
     def values(self, raw: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values [SI] of `raw` numbers."""

@@ -11,7 +11,6 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.workers import workers
 
 LUMPS = Explanation(("armature_resistance", "spring_preload", "coulomb_friction"))
 SOME = {"input_delay", "pwm_deadband", "gear_compliance"}
@@ -23,8 +22,7 @@ def limits_on(changes: dict[str, float], seed: int) -> dict[str, Limit]:
     estimator = Estimator(data, NOMINAL)
     nominal = estimator.at(Explanation())
     found: Found = replace(found_among(data, nominal), recalibrated=estimator.fit(LUMPS))
-    with workers(1) as pool:
-        return {limit.effect: limit for limit in limits(found, nominal, pool) if limit.effect in SOME}
+    return {limit.effect: limit for limit in limits(found, nominal, jobs=1) if limit.effect in SOME}
 
 
 @pytest.fixture(scope="module")

@@ -64,7 +64,8 @@ def test_every_curve_over_time_has_its_signals(page):
     "text",
     [
         "static friction", "0.260 to 0.280", "armature resistance with torque constant", "leaving the closed stop",
-        "0 to 28.6 degrees", "74 %", "spring preload", "supply voltage", "the flanks never part", "rival 4", "tied", "7.0 % of the mismatch: a slow swing",
+        "0 to 28.6 degrees", "74 %", "spring preload", "supply voltage", "the flanks never part", "rival 4", "tied",
+        "7.0 % of the mismatch: a slow swing",
         "30.00 to 32.00 s: messages are missing", "more than 900 N.m/rad",
         "Log the supply voltage.", "angle 0 to 83 degrees", "train&lt;1&gt;.mcap", "0.0042",
     ],

@@ -93,7 +93,7 @@ def test_few_recordings_leave_doubt(data: Data, helped: int, parts: int, confide
     """Laplace's rule of succession: helping in 3 of 3 parts is believed by (3 + 1) / (3 + 2)."""
     base = made_up(Explanation((), (LAG,)), 1.6, NOMINAL)
     left_out = {"sensor_lag": LeftOut(0.02, 0.01, helped, parts)}
-    found = conclude(found_among(data, made_up(Explanation(), 2.0, NOMINAL)), Remainder(base, {}, left_out, None))
+    found = conclude(found_among(data, made_up(Explanation(), 2.0, NOMINAL)), Remainder(base, {}, left_out, {}, None))
     assert found.verdict == "unexplained"
     assert found.chosen is base
     assert found.supports["sensor_lag"].confidence == pytest.approx(confidence)
@@ -106,7 +106,7 @@ def test_a_confirmed_shape_is_part_of_the_model(data: Data) -> None:
     shape = Shape(NOMINAL.with_residual(grid), NOMINAL, 0.02, 0.01, "in words", over_time)
     base = made_up(Explanation(), 2.0, NOMINAL)
     for known, model in ((shape, shape.model), (None, NOMINAL)):
-        found = conclude(found_among(data, base), Remainder(base, {}, {}, known))
+        found = conclude(found_among(data, base), Remainder(base, {}, {}, {}, known))
         assert found.model is model
         assert found.shape is known
 

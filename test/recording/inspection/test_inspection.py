@@ -5,6 +5,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin
 from support.foreign_bags import T, bench_run, write_foreign
 
+from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 from pierburg_ros.recording.inspection import inspect
 
@@ -83,6 +84,8 @@ def test_a_picture_does_not_take_the_memory_and_is_counted(tmp_path):
     bag = write_foreign(tmp_path / "bag", sorted(pictures + bench_run(20), key=lambda message: message[2]))
     camera = {topic.name: topic for topic in inspect(bag).topics}["/camera"]
     assert camera.count == 5 and camera.rate == pytest.approx(10.0) and camera.fields == ()
+    with pytest.raises(InputError, match="/camera has messages of more than 16 KiB"):
+        read_recording(bag, signals={"position": {"topic": "/camera", "field": "data[0]"}})
 
 
 def test_what_nothing_speaks_for_is_said_in_the_draft(tmp_path):

@@ -42,6 +42,14 @@ def test_the_value_is_sign_times_unit_times_scale_times_raw_plus_offset(read):
     np.testing.assert_allclose(source.values(np.array([0.0, 90.0])), [0.25, 0.25 - math.pi / 4], rtol=1e-15)
 
 
+def test_names_with_brackets_need_no_quotes(read):
+    found = read("duty: {topic: /m, field: pwm.data[2], scale: 0.01}\nhall_voltage: {column: U [V] }\n")
+    assert found.sources["duty"].path.written == "pwm.data[2]" and found.sources["duty"].scale == 0.01
+    assert found.sources["hall_voltage"].name == "U [V]"
+    block = read("hall_voltage:\n  column: U [V]\n  unit: mV\ntime: {column: [sec, nanosec]}\n")
+    assert block.sources["hall_voltage"].name == "U [V]" and block.time.columns == ("sec", "nanosec")
+
+
 def test_a_column_may_be_called_by_a_number(read):
     assert read("duty: {column: 3}\n").sources["duty"].name == "3"
 

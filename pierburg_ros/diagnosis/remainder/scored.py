@@ -1,0 +1,36 @@
+"""How likely a fit makes the recordings when what it leaves is part of the likelihood."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.plant import Model
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two."""
+
+    fit: Fit
+    discrepancy: Discrepancy
+    cost: float
+
+
+def scored(data: Data, fit: Fit) -> Scored:
+    """`fit` as it is, with its most likely discrepancy."""
+    kalman = Kalman(data, data.train)
+    residual = data.residual(fit.model, fit.switch)
+    discrepancy = kalman.most_likely(residual)
+    return Scored(fit, discrepancy, evidence(kalman.filtered(discrepancy), residual))
+
+
+def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
+    """`fit` with its most likely discrepancy, or fitted again with that, whichever is likelier."""
+    first = scored(data, fit)
+    estimator = Estimator(data, nominal, discrepancy=first.discrepancy)
+    again = scored(data, estimator.fit(fit.explanation, fit.values, BRIEF))
+    return min(first, again, key=lambda each: each.cost)

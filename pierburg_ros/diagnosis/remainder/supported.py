@@ -1,0 +1,139 @@
+"""What recordings support although something remains: quantities added one by one, counted against what remains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from pierburg_ros.diagnosis.remainder.scored import Scored, scored, settled
+from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
+from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
+from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
+from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, Quantity, canonical, quantities, without
+from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.plant import Model
+
+FOLLOWED = 6
+"""Additions of each round that are fitted, of those that a linear step promises most. Work: each costs two brief
+descents; not varied."""
+SETTLED = 3
+"""How many of them are fitted again, each with its own discrepancy. Work: each costs a brief descent and a search for
+the discrepancy; not varied."""
+MOST = 4
+"""Most quantities that are added. Work: each is a round of a second or more; not varied."""
+CARRIED = 2.0 / 3.0
+"""Share that a quantity must carry of the evidence against the model without it; the rest remains with it as well.
+Measured: see `docs/diagnosis.md`."""
+
+
+@dataclass(frozen=True)
+class Weight:
+    """What speaks for a quantity, in -2 log likelihood: what leaving it out costs, `gain`, and what is `left` with it.
+
+    Left is how much less likely the residual is than white noise of the sensor's size.
+    """
+
+    gain: float
+    left: float
+
+    @property
+    def carried(self) -> float:
+        """Share of the evidence against the model without the quantity that it carries, 0 to 1."""
+        gain, left = max(self.gain, 0.0), max(self.left, 0.0)
+        return gain / max(gain + left, 1e-9)
+
+
+@dataclass(frozen=True)
+class Supported:
+    """An explanation with its likelihood, and the weight of each of its quantities."""
+
+    scored: Scored
+    weights: Mapping[Quantity, Weight]
+
+
+def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) -> Supported | None:
+    """The smallest explanation each of whose quantities carries most of the evidence against the rest; None if none.
+
+    Quantities are added to the nominal model one by one, each the one that makes the recordings likeliest with its own
+    most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. More are
+    added as long as all still carry as much.
+    """
+    best: Supported | None = None
+    reached = scored(data, Estimator(data, nominal).at(Explanation()))
+    for _ in range(MOST):
+        following = _grown(data, nominal, reached, pool, progress)
+        if following is None:
+            break
+        reached = following
+        weighed = _weighed(data, nominal, reached, pool)
+        if all(weight.carried >= CARRIED for weight in weighed.weights.values()):
+            best = weighed
+        elif best is not None:
+            break
+    return best
+
+
+@dataclass(frozen=True)
+class _Promise:
+    """An explanation to be fitted from some starts, by the chi2 that a linear step promises."""
+
+    chi2: float
+    explanation: Explanation
+    starts: list[dict[str, float]]
+
+
+def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> Scored | None:
+    """The likeliest explanation with one quantity more."""
+    estimator = Estimator(data, nominal, discrepancy=base.discrepancy)
+    fit, drifts = estimator.restated(base.fit), drifting(nominal)
+    tasks: list[tuple[Addition, list[Start]]] = [(name, []) for name in drifts]
+    tasks += list(starts_of(data, fit.model).items())
+    promises = [each for each in pool.map(lambda task: _promise(estimator, fit, drifts, *task), tasks) if each]
+
+    def fitted(promise: _Promise) -> Fit:
+        progress(f"{promise.explanation.label}, beside what remains")
+        fits = (estimator.fit(promise.explanation, start, BRIEF) for start in promise.starts)
+        return min(fits, key=lambda fit: fit.chi2)
+
+    followed = sorted(promises, key=lambda promise: promise.chi2)[:FOLLOWED]
+    fits = sorted(pool.map(fitted, followed), key=lambda fit: fit.chi2)[:SETTLED]
+    likely = pool.map(lambda fit: settled(data, nominal, fit), fits)
+    return min(likely, key=lambda each: each.cost, default=None)
+
+
+def _promise(
+    estimator: Estimator, fit: Fit, drifts: tuple[str, ...], addition: Addition, starts: list[Start]
+) -> _Promise | None:
+    """What one linear step along an addition promises; None where it cannot be added."""
+    own = fit.explanation
+    larger = Explanation((*own.drifted, addition), own.variants) if isinstance(addition, str) else own.plus(addition)
+    explanation = canonical(larger, drifts)
+    if explanation is None:
+        return None
+    if isinstance(addition, str):
+        return _Promise(promised_by_drift(estimator.at(explanation, fit.values)), explanation, [fit.values])
+    ways = promised(estimator, fit, addition, starts)[:STARTS_TRIED]
+    return _Promise(ways[0][0], explanation, [{**fit.values, **start} for _, start in ways]) if ways else None
+
+
+def _weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Supported:
+    """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
+    estimator = Estimator(data, nominal, discrepancy=best.discrepancy)
+
+    def lacking(quantity: Quantity) -> float:
+        rest = without(best.fit.explanation, quantity)
+        try:
+            return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF)).cost
+        except InputError:
+            return best.cost
+
+    own = quantities(best.fit.explanation)
+    left = best.cost - best.fit.solution.residual.size
+    costs = zip(own, pool.map(lacking, own), strict=True)
+    return Supported(best, {quantity: Weight(cost - best.cost, left) for quantity, cost in costs})

@@ -1,0 +1,155 @@
+"""The user's own simulator in place of the description: what it does is the nominal model, and never missing physics.
+
+The description's parameters, and effects where its equations need them, are fitted to recordings that the simulator
+made. What that leaves is the difference of two simulators. It is kept apart: it counts as noise, and as much of chi2 as
+it could give is no evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.diagnosis.result import Result
+from pierburg_ros.diagnosis.schema import Diagnosis, Simulated, Simulation
+from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.search import Beam, Progress
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import encoded
+from pierburg_ros.recording import Recording
+
+BEAM = Beam(width=1, depth=2, ahead=8, budget=100)
+"""How far effects are looked for in a simulator's recordings. Work: a simulator has no more than a few of them, and
+what is not found counts as no evidence; not varied."""
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """A simulator as our equations have it.
+
+    `model` is nominal for an actuator whose nominal numbers are the simulator's, `described` that of the description;
+    `left` is the root mean square of what the fit leaves of its recordings, without their own noise, and
+    `described_rmse` that of the description as it is, both in the measured unit.
+    """
+
+    recordings: tuple[str, ...]
+    described: Model
+    model: Model
+    described_rmse: float
+    left: float
+    travel: float
+
+    def kept_apart(self, data: Data) -> Data:
+        """Real recordings in which the difference of the two simulators is no evidence."""
+        return replace(data, noise=float(np.hypot(data.noise, self.left)), unlike=self.left)
+
+    def told(self, result: Result) -> Result:
+        """A diagnosis against `model` that says so, with its model in the terms of the description."""
+        found = result.diagnosis
+        summary = f"{self.sentence(found.unit)} {found.summary}"
+        written = found.model_copy(update={"simulation": self.document(found), "summary": summary})
+        model = Model(self.described.actuator, result.model.values, result.model.residual_torque)
+        return replace(result, diagnosis=written, model=model)
+
+    def sentence(self, unit: str) -> str:
+        """What the recordings are held against, and how well our equations reproduce it."""
+        count = len(self.recordings)
+        own = f"{count} recordings of it" if count > 1 else "a recording of it"
+        needed = f", with {_listed(self.model.active_effects)}" if self.model.active_effects else ""
+        return (
+            f"Held against your simulator, not against the description: our equations reproduce {own} to "
+            f"{self.left:.2g} {unit}, {100.0 * self.left / self.travel:.2g} % of its travel{needed} (as described: "
+            f"{self.described_rmse:.2g} {unit}). What they leave is kept apart and counts as no evidence."
+        )
+
+    def document(self, found: Diagnosis) -> Simulation:
+        """The same for diagnosis.json."""
+        names = {name: each.unit for name, each in found.parameters.items()}
+        before, after = self.described.values, self.model.values
+        return Simulation(
+            recordings=list(self.recordings),
+            described_rmse=self.described_rmse,
+            rmse=self.left,
+            parameters={
+                name: Simulated(described=before[name], value=after[name], unit=unit) for name, unit in names.items()
+            },
+            effects={
+                effect: {name: after[f"{effect}.{name}"] for name in EFFECT[effect].names}
+                for effect in self.model.active_effects
+            },
+        )
+
+
+def reproduction(
+    simulation: Sequence[Recording],
+    real: Sequence[Recording],
+    described: Model,
+    progress: Progress = lambda _: None,
+    jobs: int | None = None,
+) -> Reproduction:
+    """The simulator that made the recordings `simulation`, fitted as finely as the `real` ones can tell.
+
+    InputError where they cannot be used.
+    """
+    recordings = [as_measured(recording, described) for recording in simulation]
+    own = in_parts(data_of(recordings, described))
+    noise = float(np.hypot(own.noise, data_of(real, described).noise))
+    data = replace(own, noise=noise, step=0.0)
+    found = search(data, described, lambda tried: progress(f"simulator: {tried}"), jobs, BEAM)
+    fit = lasting(found)
+    actuator = with_nominal(described.actuator, fit)
+    rmse, before = (rms(data.residual(model)) * noise for model in (fit.model, described))
+    travel = max(float(np.ptp(run.measured)) for run in data.runs)
+    left = float(np.sqrt(max(rmse**2 - own.sensor_noise**2, 0.0)))
+    names = tuple(dict.fromkeys(recording.name for recording in recordings))
+    return Reproduction(names, described, Model.nominal(actuator), before, left, travel)
+
+
+def as_measured(recording: Recording, described: Model) -> Recording:
+    """A simulator's recording in the quantity that the actuator measures: an angle as a right sensor shows it."""
+    wanted = described.actuator.quantity
+    if recording.quantity == wanted:
+        return recording
+    if (recording.quantity, wanted) == ("position", "hall_voltage"):
+        return replace(recording, quantity=wanted, measured=encoded(described, recording.measured))
+    raise InputError(
+        f"{recording.name}, given as simulation, holds {recording.quantity}, but actuator {described.actuator.name} "
+        f"measures {wanted}. Record {wanted} in your simulator."
+    )
+
+
+def lasting(found: Found) -> Fit:
+    """The chosen explanation, or where it depends on a time in one recording, the best that does not."""
+    if _lasts(found.chosen):
+        return found.final
+
+    def cost(fit: Fit) -> float:
+        return fit.misfit / fit.repetition + SIGNIFICANT * fit.explanation.size
+
+    return min((fit for fit in found.fits.values() if _lasts(fit)), key=cost)
+
+
+def _lasts(fit: Fit) -> bool:
+    """Whether an explanation holds at any time in any recording."""
+    return fit.explanation.changed is None and not any(EFFECT[name].dated for name in fit.explanation.effects)
+
+
+def with_nominal(actuator: Actuator, fit: Fit) -> Actuator:
+    """`actuator` with a fit's values as its nominal ones, and the fit's effects as those that it always has."""
+    values = fit.model.values
+    parameters = {name: replace(each, default=values[name]) for name, each in actuator.parameters.items()}
+    effects = {name: {p: values[f"{name}.{p}"] for p in EFFECT[name].names} for name in fit.model.active_effects}
+    return replace(actuator, parameters=parameters, effects=effects)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Effects in words."""
+    return " and ".join(name.replace("_", " ") for name in names)

@@ -1,0 +1,44 @@
+"""Quantities that recordings support although something remains; none where only that is there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.recordings import NOISE, NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.remainder.supported import CARRIED, Supported, Weight, supported
+from pierburg_ros.recording import Recording
+from pierburg_ros.workers import workers
+
+
+def disturbed(changes: dict[str, float], seed: int) -> Recording:
+    """A recording of the valve with `changes` beside a slow wave of ten times the noise that no effect makes."""
+    clean = recording(changes, duration=16.0, seed=seed)
+    random = np.random.default_rng(seed + 100)
+    knots = np.linspace(clean.time[0], clean.time[-1], 12)
+    wave = np.interp(clean.time, knots, random.normal(0.0, 10.0 * NOISE, knots.size))
+    wave[clean.time < 0.5] = 0.0
+    return replace(clean, measured=clean.measured + wave)
+
+
+def found_in(changes: dict[str, float], seed: int = 0) -> Supported | None:
+    with workers(1) as pool:
+        return supported(data_on(disturbed(changes, seed)), NOMINAL, pool, lambda _: None)
+
+
+def test_an_effect_is_named_beside_what_no_effect_makes():
+    found = found_in({"input_delay.delay": 0.02})
+    assert found is not None and found.scored.fit.explanation.effects == ("input_delay",)
+    assert found.scored.fit.values["input_delay.delay"] == pytest.approx(0.02, abs=0.001)
+    assert found.scored.discrepancy.size > 3.0
+
+
+def test_nothing_is_named_where_only_that_is_there():
+    assert found_in({}, seed=1) is None
+
+
+def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
+    assert Weight(300.0, 100.0).carried == pytest.approx(0.75)
+    assert Weight(-5.0, 100.0).carried == 0.0
+    assert Weight(100.0, -5.0).carried == 1.0
+    assert 0.5 < CARRIED < 1.0

@@ -1,0 +1,41 @@
+"""`pr.read` with a signal map: as a path, as a mapping, and in the units of the actuator's motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pierburg_ros as pr
+from pierburg_ros.actuators import read_actuator
+
+SIGNALS = {"duty": {"column": "pwm", "unit": "percent"}, "position": {"column": "x", "unit": "mm"}}
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Two samples of an axis."""
+    path = tmp_path / "run.csv"
+    path.write_text("time,pwm,x\n0,10,0\n0.1,20,30\n")
+    return path
+
+
+def test_a_map_may_be_a_path_or_a_mapping(table, tmp_path):
+    (tmp_path / "signals.yaml").write_text("duty: {column: pwm, unit: percent}\nposition: {column: x, unit: mm}\n")
+    for signals in (SIGNALS, tmp_path / "signals.yaml", str(tmp_path / "signals.yaml")):
+        recording = pr.read(table, signals=signals)
+        np.testing.assert_allclose(recording.measured, [0.0, 0.03])
+        np.testing.assert_allclose(recording.command.values, [0.1, 0.2])
+
+
+def test_a_length_is_refused_for_a_rotary_actuator_and_an_angle_for_a_linear_one(table):
+    rotary = read_actuator("xl330")
+    linear = replace(rotary, motion="linear")
+    assert pr.read(table, signals=SIGNALS, actuator=linear).measured[-1] == pytest.approx(0.03)
+    with pytest.raises(
+        pr.InputError, match="signals: position is in a unit of m, expected one of rad: xl330 is rotary"
+    ):
+        pr.read(table, signals=SIGNALS, actuator=rotary)
+    angle = {**SIGNALS, "position": {"column": "x", "unit": "deg"}}
+    assert pr.read(table, signals=angle, actuator=rotary).measured[-1] == pytest.approx(np.pi / 6)
+    with pytest.raises(pr.InputError, match="signals: position is in a unit of rad, expected one of m"):
+        pr.read(table, signals=angle, actuator=linear)

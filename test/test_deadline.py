@@ -1,0 +1,54 @@
+"""A deadline: work ends with what it has, by the clock or by Ctrl-C, and what is left of the time is none."""
+
+import math
+import threading
+
+import pytest
+
+from pierburg_ros.deadline import Deadline, OutOfTime
+from pierburg_ros.workers import workers
+
+
+def interrupted():
+    raise KeyboardInterrupt
+
+
+def test_without_a_limit_work_ends_as_it_does():
+    deadline = Deadline()
+    assert deadline.attempt(lambda: 5, otherwise=0) == 5
+    assert math.isinf(deadline.left) and not deadline.stopped
+    deadline.check()
+
+
+def test_once_the_time_is_over_nothing_is_begun():
+    deadline = Deadline(0.0)
+    assert deadline.attempt(pytest.fail, otherwise=7) == 7
+    assert deadline.stopped
+    with pytest.raises(OutOfTime):
+        deadline.check()
+
+
+def test_ctrl_c_ends_the_work_and_all_that_would_follow():
+    deadline = Deadline(1000.0)
+    assert deadline.part(0.5).attempt(interrupted, otherwise=1) == 1
+    assert deadline.stopped and deadline.left == 0.0
+    assert deadline.attempt(pytest.fail, otherwise=2) == 2
+
+
+def test_a_part_that_is_over_leaves_time_for_the_rest():
+    deadline = Deadline(1000.0)
+    part = deadline.part(0.0)
+    assert part.attempt(pytest.fail, otherwise=1) == 1
+    assert deadline.stopped and deadline.attempt(lambda: 3, otherwise=0) == 3
+
+
+def test_who_waits_for_workers_waits_no_longer_than_that():
+    release = threading.Event()
+    deadline = Deadline(0.05)
+
+    def work():
+        with workers(1, deadline) as pool:
+            return list(pool.map(lambda _: release.wait(600.0), range(3)))
+
+    assert deadline.attempt(work, otherwise=None) is None
+    release.set()
