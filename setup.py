@@ -16,6 +16,7 @@ COMMANDS = (
     "diagnose",
     "inspect",
     "export",
+    "actuator",
     "recover",
     "prove",
     "tune",

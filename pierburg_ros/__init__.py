@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pierburg_ros.errors import InputError
     from pierburg_ros.library.comparing import Comparison, compare
     from pierburg_ros.library.diagnosing import Diagnosis, diagnose
-    from pierburg_ros.library.exporting import Export, export
+    from pierburg_ros.library.exporting import Export
     from pierburg_ros.library.identifying import Identification, identify
     from pierburg_ros.library.model import Model
     from pierburg_ros.library.reading import read
@@ -37,7 +37,6 @@ __all__ = [
     "Simulation",
     "compare",
     "diagnose",
-    "export",
     "identify",
     "read",
     "simulate",
@@ -54,7 +53,6 @@ _HOME = {
     "Simulation": "library.simulation",
     "compare": "library.comparing",
     "diagnose": "library.diagnosing",
-    "export": "library.exporting",
     "identify": "library.identifying",
     "read": "library.reading",
     "simulate": "library.simulation",

@@ -32,7 +32,8 @@ ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["diagnosis"] = ALLOWED["estimation"] | {"estimation", "workers", "deadline", "pages"}
+ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
@@ -58,6 +59,7 @@ ROOMS = {
         "paper": {"fit"},
         "identify": {"fit", "identifiability", "paper"},
         "experiment": {"fit", "identify", "paper"},
+        "description": {"fit", "identifiability", "identify"},
     },
     "nodes": {"core": set()},
     "plant": {

@@ -149,6 +149,12 @@ def _check_effect(effect: str, values: dict[str, float]) -> None:
             raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
 
 
+def needed_parameters(drive: Drive, load: Load, sensor: Sensor) -> list[str]:
+    """Names of the parameters that every actuator of this kind needs, in the order of `UNITS`."""
+    needed = _COMMON | _DRIVE[drive] | _LOAD[load] | _SENSOR[sensor]
+    return [name for name in UNITS if name in needed]
+
+
 def read_actuator(source: str | Path) -> Actuator:
     """The actuator called `source` (a shipped name, or the path of a YAML file); InputError where unusable."""
     with reading(source, FORM):

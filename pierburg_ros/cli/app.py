@@ -49,6 +49,7 @@ COMMANDS = {
     "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
     "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, what each could be."),
     "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
+    "actuator": Command("Describe an actuator; say what is implausible about a description."),
     "recover": Command("Make a cut recording whole for every reader."),
     "prove": Command("Seeded blind trials of the diagnosis."),
     "tune": Command("PIFLC gains and sets for a stated goal over a set of plants."),
@@ -179,6 +180,7 @@ replay = standalone("replay")
 diagnose = standalone("diagnose")
 inspect = standalone("inspect")
 export = standalone("export")
+actuator = standalone("actuator")
 recover = standalone("recover")
 prove = standalone("prove")
 tune = standalone("tune")

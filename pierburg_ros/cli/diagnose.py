@@ -46,6 +46,7 @@ def diagnose(
         USUAL_BUDGET
     ),
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
@@ -62,7 +63,7 @@ def diagnose(
 
     measured, simulated = taken(recordings, signals), taken(simulation or (), simulation_signals or signals)
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated)
+        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)
     terminal().print(
         shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
@@ -75,6 +76,7 @@ def diagnosed_with_progress(
     jobs: int | None = None,
     budget: float | None = USUAL_BUDGET,
     simulation: Sequence[Recording] = (),
+    force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
     with _progress() as bar:
@@ -84,7 +86,13 @@ def diagnosed_with_progress(
             bar.update(task, advance=1, description=tried)
 
         return diagnosis_of(
-            recordings, model=nominal, simulation=simulation or None, progress=tell, jobs=jobs, budget=budget
+            recordings,
+            model=nominal,
+            simulation=simulation or None,
+            progress=tell,
+            jobs=jobs,
+            budget=budget,
+            force=force,
         )
 
 

@@ -10,7 +10,7 @@ import typer
 
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
-from pierburg_ros.library import exporting
+from pierburg_ros.library.model import Model
 
 ToOption = Annotated[str, typer.Option("--to", help="mujoco, urdf, sdf, modelica or json.")]
 
@@ -22,7 +22,7 @@ def export(
 ) -> None:
     """Write a model for another simulator, and say what its format cannot hold."""
     refuse_folder(output)
-    exported = exporting.export(model, to)
+    exported = Model.read(model).export(to)
     exported.write(output)
     console = terminal()
     for note in exported.notes:

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, losses_first, topics_of
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.identify import Identification
@@ -66,6 +66,7 @@ def identify(
             identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)
         identified.write_into(folder)
     losses_first(console, measured)
+    faults_first(console, measured, start)
     for recording in identified.recordings:
         if late := taken_up(recording):
             console.print(f"{recording.name}{late}", soft_wrap=True)

@@ -11,9 +11,11 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
+from pierburg_ros.plant import Model
 from pierburg_ros.recording.inspection import Inspection, TopicContent
 from pierburg_ros.recording.inspection import inspect as inspected
 
@@ -29,6 +31,7 @@ def inspect(
     write_signals: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a signal map of what was guessed, to edit.")
     ] = None,
+    actuator: Annotated[str | None, typer.Option(help="Hold the signals against this actuator.")] = None,
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
@@ -49,6 +52,8 @@ def inspect(
     console.print(table(found), soft_wrap=True)
     console.print("\n".join(numbers(found)), soft_wrap=True)
     console.print(read_as(found), soft_wrap=True)
+    if found.recording is not None and actuator is not None:
+        faults_first(console, [found.recording], Model.nominal(read_actuator(actuator)))
     if write_signals is not None:
         console.print(
             f"{write_signals}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True

@@ -9,7 +9,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from pierburg_ros.audit import audit
 from pierburg_ros.errors import InputError
+from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
 TopicOption = Annotated[
@@ -54,3 +56,9 @@ def losses_first(console: Console, recordings: Sequence[Recording]) -> None:
     for recording in recordings:
         if recording.warning:
             console.print(f"{recording.name}: {recording.warning}", soft_wrap=True)
+
+
+def faults_first(console: Console, recordings: Sequence[Recording], nominal: Model) -> None:
+    """Print which signals of the recordings are not what they are read as, and what mends them; nothing of others."""
+    for fault in audit(recordings, nominal):
+        console.print(f"Warning: {fault}", soft_wrap=True, markup=False)

@@ -9,7 +9,7 @@ import typer
 from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, losses_first, topics_of
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
@@ -35,6 +35,7 @@ def replay(
     comparison.save(output)
     console = terminal()
     losses_first(console, [measured])
+    faults_first(console, [measured], chosen)
     console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
 
 

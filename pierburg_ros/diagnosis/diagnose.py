@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
+from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Progress
@@ -29,14 +31,19 @@ def diagnose(
     jobs: int | None = None,
     budget: float | None = None,
     simulation: Sequence[Recording] = (),
+    force: bool = False,
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
     `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; without a budget it takes what it takes.
     InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
-    model: `nominal` is then fitted to them first.
+    model: `nominal` is then fitted to them first. Where signals are not what they are read as, that is all that is
+    said, unless it goes on by `force`.
     """
+    faults = [] if force else audit(recordings, nominal)
+    if faults:
+        return refusal(recordings, nominal, faults)
     simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
     nominal = simulator.model if simulator else nominal
     data = evidence(recordings, nominal)

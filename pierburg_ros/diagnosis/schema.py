@@ -285,6 +285,19 @@ class Simulation(Part):
     """What the equations need to reproduce it, and what the description always has; values in the catalogue's units."""
 
 
+class InputFault(Part):
+    """A signal that is not what it is read as."""
+
+    recording: str
+    signal: str
+    """As a signal map calls it."""
+    what: str
+    evidence: str
+    """How it shows, in words, with numbers."""
+    mend: str
+    """The line of a signal map that mends it, or what to do where none does."""
+
+
 class Diagnosis(Part):
     """The whole document."""
 
@@ -326,6 +339,8 @@ class Diagnosis(Part):
     residual_torque: ResidualTorque | None = None
     """Only with the verdict "unexplained"."""
     data_quality: DataQuality
+    input_faults: list[InputFault] = []
+    """Signals that are not what they are read as; where there are any, nothing is concluded."""
     advice: list[str] = []
     """What to record next to settle what these recordings cannot."""
 

@@ -33,9 +33,9 @@ is known to a fraction of the noise."""
 MOVES = 2
 """Steps by which a beginning is moved. Work: one more simulation each; the second gains where the first was far.
 Not varied."""
-TRUST = 3.0
-"""Standard deviations of what the samples say by which a beginning may be moved freely. Chosen: a model that lacks
-physics moves it, and shall not explain itself so; not varied."""
+TRUST = 5.0
+"""Standard deviations of what the samples say by which a beginning may be moved. Chosen: chance never asks for more; a
+model that lacks physics would, and shall not explain itself so. Not varied."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,8 @@ class Shooting:
         slopes = shot(angle_error, 0.0) - best, shot(0.0, velocity_error) - best
         error, lengths = self._sums(np.square(measured - best)), np.diff(np.append(self.first, time.size))
         for _ in range(MOVES):
-            further = move + self._move(measured - best, *slopes, noise_of(time, measured))
+            step = self._move(measured - best, *slopes, noise_of(time, measured))
+            further = np.clip(move + step, -TRUST, TRUST)
             moved = shot(further[0] * angle_error, further[1] * velocity_error)
             reached = self._sums(np.square(measured - moved))
             better = reached < error

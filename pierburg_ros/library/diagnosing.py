@@ -126,6 +126,7 @@ def diagnose(
     progress: Progress | None = None,
     jobs: int | None = None,
     budget: float | None = USUAL_BUDGET,
+    force: bool = False,
 ) -> Diagnosis:
     """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
 
@@ -134,7 +135,8 @@ def diagnose(
     model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
     words what is being tried. `jobs` is the number of fits at a time, by default one for each core. Takes seconds to
     minutes: after `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; None takes what it takes.
-    InputError where a recording cannot be used.
+    Where signals are not what they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes
+    on. InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
         print(diagnosis.verdict, diagnosis.effects)
@@ -143,5 +145,6 @@ def diagnose(
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = recordings_of(recordings, nominal.actuator)
     simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
-    found = diagnosing.diagnose(measured, nominal, progress or (lambda _: None), jobs, budget, simulated)
+    tell = progress or (lambda _: None)
+    found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
     return Diagnosis(found, (*measured, *simulated))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pierburg_ros.export import Exported
 from pierburg_ros.export import export as exporting
-from pierburg_ros.library.model import ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole
+from pierburg_ros.plant import Model
 
 
 @dataclass(frozen=True)
@@ -29,14 +29,6 @@ class Export:
         write_whole(Path(path), self.text)
 
 
-def export(model: ModelLike, to: str) -> Export:
-    """A model for another simulator: `to` is mujoco, urdf, sdf, modelica or json.
-
-    What the format cannot hold stands in the file as a comment, and in `left_out`: effect, parameter, value. InputError
-    where the model or the format cannot be used.
-
-        exported = pr.export("results/diagnosis/model.yaml", to="mujoco")
-        exported.write("valve.xml")
-        print(exported.left_out)
-    """
-    return Export.of(exporting(chosen_model(model), to))
+def export(model: Model, to: str) -> Export:
+    """`model` for another simulator: `to` is mujoco, urdf, sdf, modelica or json. InputError where there is no such."""
+    return Export.of(exporting(model, to))

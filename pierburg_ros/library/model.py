@@ -9,6 +9,8 @@ from typing import Any, TypeAlias
 from pierburg_ros import plant
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.errors import InputError
+from pierburg_ros.library import exporting
+from pierburg_ros.library.exporting import Export
 from pierburg_ros.plant.model_file import read_model
 
 
@@ -40,6 +42,17 @@ class Model(plant.Model):
     def of(model: plant.Model) -> Model:
         """`model` with what this class adds."""
         return Model(model.actuator, model.values, model.residual_torque)
+
+    def export(self, to: str) -> Export:
+        """The model for another simulator: `to` is mujoco, urdf, sdf, modelica or json; InputError where it is none.
+
+        What the format cannot hold stands in the file as a comment, and in `left_out`: effect, parameter, value.
+
+            exported = pr.Model.read("results/diagnosis/model.yaml").export("mujoco")
+            exported.write("valve.xml")
+            print(exported.left_out)
+        """
+        return exporting.export(self, to)
 
     def with_values(self, changes: Mapping[str, float]) -> Model:
         """The model with some values changed; InputError where a name is unknown or a value not allowed."""

@@ -31,5 +31,6 @@ def page_signals(recordings: Sequence[Mapping[str, Signal]], telling: Sequence[s
 
 def _kept(signals: Mapping[str, Signal], telling: Sequence[str], share: float) -> np.ndarray:
     """Which samples to keep, at most a `share` of them: two of each stretch and signal that is telling."""
+    telling = [name for name in telling if name in signals]
     buckets = max(int(share * signals["time"].size / (2 * len(telling))) - 1, 2)
     return np.unique(np.concatenate([extremes(signals[name], buckets) for name in telling]))

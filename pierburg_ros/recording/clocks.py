@@ -18,6 +18,8 @@ from pierburg_ros.recording.topics import Found, Topics
 
 STAMPED_BESIDE = ("hall_voltage", "applied_duty")
 """Signals that the plant publishes once for each `joint_states`, so that they share its stamp."""
+HEADER_STAMP = "header.stamp"
+"""The path of the stamp in messages that begin with a header; it stands at one place in all of them."""
 SHARED = 0.9
 """Least share of the range of sequence numbers that two topics of one tick have in common."""
 TOLERANCE = 0.1
@@ -96,12 +98,12 @@ class Clocks:
 
     def own_stamps(self, messages: Messages) -> Integers | None:
         """Stamps [ns] in the messages themselves: in the field of a map, or else in their header."""
-        asked = self.asked
+        asked, headed = self.asked, is_headed(messages)
         if asked is not None and asked.path is not None and self.others is not None:
             same = messages.topic == asked.topic or messages.type == self.others.type
-            if same:
+            if same and not (headed and asked.path.written == HEADER_STAMP):
                 return asked_stamps(messages, asked)
-        stamps = cdr.stamp(messages) if is_headed(messages) else None
+        stamps = cdr.stamp(messages) if headed else None
         return stamps if stamps is not None and np.any(stamps) else None
 
     def clocked(self, signal: str, messages: Messages) -> tuple[NDArray[np.bool_], Integers] | None:

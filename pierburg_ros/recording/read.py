@@ -30,6 +30,10 @@ LONGEST = 7 * 86_400.0
 takes about two minutes."""
 SPARSEST = 60.0
 """Time [s] for each sample at most: no motion of an actuator shows in less than one sample a minute."""
+UNITS_OF_TIME = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+"""Smaller units [s] in which times may be written, the largest first."""
+USUAL = 0.2
+"""Interval [s] below which samples of a motion usually lie."""
 ACTING = ("supply_voltage", "enabled")
 """Optional signals without which the simulation of the recording would differ."""
 
@@ -71,18 +75,25 @@ def wanted(chosen: SignalMap) -> Wanted:
 
 def check_bounds(recording: Recording) -> None:
     """Refuse what no bench gives: values beyond any sensor, and times that no motion needs."""
+    longest = min(LONGEST, SPARSEST * recording.time.size)
+    if not recording.duration <= longest:
+        raise InputError(
+            f"{recording.name} spans {recording.duration:.3g} s with {recording.time.size} samples, expected at most"
+            f" {longest:,.0f} s. Check the unit of its times{_unit_of(recording)}, or cut it into parts."
+        )
     check_magnitude(f"{recording.name}: {recording.quantity}", recording.measured)
     channels = {recording.input: recording.command, **{signal: getattr(recording, signal) for signal in OPTIONAL}}
     for signal, channel in channels.items():
         if channel is not None:
             check_magnitude(f"{recording.name}: {signal}", channel.values)
             check_magnitude(f"{recording.name}: time of {signal} [s]", channel.time)
-    longest = min(LONGEST, SPARSEST * recording.time.size)
-    if not recording.duration <= longest:
-        raise InputError(
-            f"{recording.name} spans {recording.duration:.3g} s with {recording.time.size} samples, expected at most"
-            f" {longest:,.0f} s. Check the unit of its times, or cut it into parts."
-        )
+
+
+def _unit_of(recording: Recording) -> str:
+    """The line of a signal map with which samples would lie milliseconds apart, where a unit has that effect."""
+    interval = float(np.median(np.diff(recording.time)))
+    units = [unit for unit, seconds in UNITS_OF_TIME.items() if seconds * interval <= USUAL]
+    return f" (`time: {{unit: {units[0]}}}` in a signal map)" if units else ""
 
 
 def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()) -> Recording:

@@ -88,7 +88,8 @@ class Recording:
         if self.input == "duty" and largest > 1.0 + 1e-9:
             raise InputError(
                 f"{self.name}: found a duty of magnitude {largest:g}, expected a fraction within [-1, 1]."
-                " Divide percentages by 100, and record the duty that was applied."
+                " Divide percentages by 100 (`duty: {unit: percent}` in a signal map) and counts by those of full duty"
+                " (`duty: {scale: ...}`), and record the duty that was applied, no setpoint."
             )
 
     def _drop_repeats(self) -> None:

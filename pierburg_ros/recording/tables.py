@@ -17,6 +17,7 @@ from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.signal_map import SignalMap, TimeSource
 from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order, near
+from pierburg_ros.recording.topics import nothing
 
 
 @dataclass(frozen=True)
@@ -132,8 +133,12 @@ class TableReader:
         return bool(parts) and all(self.columns.get(signal) in part.cells for part in parts)
 
     def is_filled(self, signal: str) -> bool:
-        """Whether the column of the signal has any value."""
-        return self.has(signal) and not all(np.all(np.isnan(self.raw(part, signal))) for part in self.parts(signal))
+        """Whether the column of the signal has any value; one that a person chose must."""
+        filled = self.has(signal) and not all(np.all(np.isnan(self.raw(part, signal))) for part in self.parts(signal))
+        source = self.chosen.sources.get(signal)
+        if source is not None and not filled:
+            raise nothing(source, signal, f"{self.tables.name} has nothing in the column {source.name}")
+        return filled
 
     def raw(self, part: Columns, signal: str) -> Signal:
         """The numbers in the column of the signal."""

@@ -12,7 +12,7 @@ from pierburg_ros.recording.decoding import numbers
 from pierburg_ros.recording.formats.cdr import CLOCK, JOINT_STATE
 from pierburg_ros.recording.formats.messages import Bag, Messages
 from pierburg_ros.recording.signal_map import SignalMap, Source
-from pierburg_ros.recording.signals import SIGNALS, last_name, near
+from pierburg_ros.recording.signals import OPTIONAL, SIGNALS, last_name, near
 
 PLAIN = {
     f"std_msgs/msg/{kind}"
@@ -32,6 +32,12 @@ class Found:
     values: Signal
 
 
+def nothing(source: Source, signal: str, found: str) -> InputError:
+    """What to say where a person chose a source for a `signal` that may be absent, and nothing is there."""
+    place = "" if source.origin == "--topic" else f"{source.origin}: "
+    return InputError(f"{place}{found}, expected values of {signal}. Leave it out, in a signal map as {signal}: null.")
+
+
 def namespace(topic: str) -> str:
     """`/bench/hall_voltage` -> `/bench`."""
     return topic.rpartition("/")[0]
@@ -48,6 +54,8 @@ class Topics:
         """The messages of `signal` and its values, or None where there are none."""
         source, topic = self.chosen.sources.get(signal), self.topic_of(signal)
         if topic is None or not self.bag.data[topic]:
+            if source is not None and signal in OPTIONAL:
+                raise nothing(source, signal, f"{self.bag.name} has no messages on {topic}")
             return None
         messages = self.bag.messages(topic)
         if source is None:

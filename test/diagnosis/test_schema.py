@@ -22,8 +22,7 @@ NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.i
 CONTRACT = {
     "schema", "recordings", "quantity", "unit", "input", "motion", "verdict", "summary", "stopped", "effects",
     "parameters", "changes", "locations", "regimes", "fit", "candidates", "not_testable", "cannot_act", "ruled_out",
-    "remaining",
-    "excluded", "residual_torque", "data_quality", "advice",
+    "remaining", "excluded", "residual_torque", "data_quality", "input_faults", "advice",
 }  # fmt: skip
 
 

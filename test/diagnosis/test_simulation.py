@@ -10,7 +10,7 @@ from support.other_simulators import mujoco_angle, steps
 from support.recordings import NOISE, NOMINAL, recording
 
 from pierburg_ros.diagnosis.diagnose import diagnose
-from pierburg_ros.diagnosis.simulation import as_measured, reproduction
+from pierburg_ros.diagnosis.simulation import as_measured
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording
@@ -55,18 +55,18 @@ def mine() -> Recording:
 
 @pytest.mark.search
 def test_an_effect_that_the_simulator_lacks_is_named(mine):
-    real = recording({**OWN, **acting("load_dependent_friction")}, seed=5)
+    real = recording({**OWN, **acting("static_friction")}, seed=5)
     result = diagnose([real], NOMINAL, simulation=[mine])
     found = result.diagnosis
     assert found.verdict == "missing_physics"
-    assert [effect.id for effect in found.effects] == ["load_dependent_friction"]
-    assert found.effects[0].parameters["coefficient"].value == pytest.approx(0.1, abs=0.02)
+    assert [effect.id for effect in found.effects] == ["static_friction"]
+    assert found.effects[0].parameters["breakaway_torque"].value == pytest.approx(0.27, abs=0.03)
     assert not any(parameter.drifted for parameter in found.parameters.values())
     assert found.summary.startswith("Held against your simulator, not against the description: our equations reproduce")
     assert found.simulation.recordings == ["mine.csv"]
     assert found.simulation.rmse < 0.2 * NOISE < found.simulation.described_rmse
     assert result.model.actuator == NOMINAL.actuator
-    assert result.model.values["load_dependent_friction.coefficient"] == pytest.approx(0.1, abs=0.02)
+    assert result.model.values["static_friction.breakaway_torque"] == pytest.approx(0.27, abs=0.03)
 
 
 @pytest.mark.search
@@ -78,25 +78,14 @@ def test_what_the_simulator_has_and_the_description_lacks_is_not_named(mine):
 
 @pytest.mark.search
 def test_a_crude_simulator_makes_nothing_missing(mine):
-    """It sticks late, sets off late and creeps: our equations cannot do so, and the real valve, which is nominal, does
-    not either. What is between the two simulators stays between them."""
+    """Its time is stretched and squeezed by up to 8 ms: our equations cannot do so, and the real valve does not either.
+    What is between the two simulators stays between them."""
     angle = as_measured(mine, NOMINAL).measured
     crude = np.interp(TIME - 0.004 * (1.0 + np.sin(0.9 * TIME)), TIME, angle)
     odd = Recording("odd.csv", "hall_voltage", TIME, crude, mine.command)
-    found = diagnose([recording(OWN, seed=6)], NOMINAL, simulation=[odd]).diagnosis
+    found = diagnose([recording(OWN, seed=6, duration=12.0)], NOMINAL, simulation=[odd]).diagnosis
     assert found.verdict == "consistent", found.summary
     assert found.simulation.rmse > NOISE
-
-
-@pytest.mark.search
-def test_how_well_a_simulator_is_reproduced_is_measured(mine):
-    real = recording(OWN, seed=6, duration=12.0)
-    simulator = reproduction([mine], [real], NOMINAL)
-    assert simulator.left < 0.2 * NOISE
-    again = simulator.model.actuator.parameters
-    assert {name: each.nominal for name, each in again.items()} == {
-        name: simulator.model.values[name] for name in again
-    }
 
 
 def test_an_angle_is_what_a_right_sensor_shows_of_it():

@@ -87,3 +87,38 @@ def test_missing_value_is_asked_for(tmp_path: Path) -> None:
 def test_missing_file_is_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"does not exist, expected a model file"):
         read_model(tmp_path / "none.yaml")
+
+
+def own_actuator(folder: Path) -> Path:
+    path = folder / "my_throttle.yaml"
+    path.write_text((Path(__file__).parents[2] / "examples/my_actuator.yaml").read_text(encoding="utf-8"))
+    return path
+
+
+def test_a_model_of_ones_own_actuator_carries_it(tmp_path: Path) -> None:
+    description = own_actuator(tmp_path)
+    model = Model.nominal(read_actuator(description)).with_values({"armature_resistance": 1.7})
+    model.write(tmp_path / "model.yaml")
+    description.unlink()
+    again = read_model(tmp_path / "model.yaml")
+    assert again == model
+    again.write(tmp_path / "again.yaml")
+    assert (tmp_path / "again.yaml").read_text() == (tmp_path / "model.yaml").read_text()
+
+
+def test_a_model_may_name_the_description_beside_it(tmp_path: Path) -> None:
+    own_actuator(tmp_path)
+    model = read(tmp_path, "actuator: my_throttle.yaml\nparameters: {armature_resistance: 1.7}\n")
+    assert model.actuator.name == "my_throttle" and model.values["armature_resistance"] == 1.7
+    (tmp_path / "my_throttle.yaml").unlink()
+    with pytest.raises(InputError, match=r"model.yaml line 1: There is no actuator my_throttle.yaml") as gone:
+        read(tmp_path, "actuator: my_throttle.yaml\n")
+    assert "\n" not in str(gone.value)
+
+
+def test_a_damaged_description_in_a_model_is_refused_with_its_line(tmp_path: Path) -> None:
+    model = Model.nominal(read_actuator(own_actuator(tmp_path)))
+    model.write(tmp_path / "model.yaml")
+    damaged = (tmp_path / "model.yaml").read_text().replace("load: spring", "load: feather")
+    with pytest.raises(InputError, match="line 2: actuator: load: Input should be"):
+        read(tmp_path, damaged)

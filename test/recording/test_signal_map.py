@@ -321,6 +321,16 @@ def test_a_message_that_is_not_of_its_type_is_named(tmp_path, written):
     )
 
 
+def test_a_chosen_signal_without_values_is_refused(tmp_path, write_bag, run):
+    bag = write_bag(run(), battery="float")
+    with pytest.raises(InputError, match=r"signals: supply_voltage: run.mcap has no messages on /battery, expected"):
+        read_recording(bag, signals={"supply_voltage": {"topic": "/battery"}})
+    (tmp_path / "run.csv").write_text("time,duty,position,vbat\n0,0,0,\n1,0,1,\n")
+    with pytest.raises(InputError, match=r"^run.csv has nothing in the column vbat, expected values of supply_voltage"):
+        read_recording(tmp_path / "run.csv", topics={"supply_voltage": "vbat"})
+    assert read_recording(bag, signals={"supply_voltage": None, "temperature": None}).supply_voltage is None
+
+
 def test_one_decimal_mark_a_table(tmp_path, written):
     (tmp_path / "run.csv").write_text("time;duty;hall_voltage\n0,0;0,5;1.25\n0,1;0,5;1,5\n")
     with pytest.raises(InputError, match=r"has '1.25' in row 2 and '0,0' in row 2, expected one mark before"):

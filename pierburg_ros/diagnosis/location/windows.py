@@ -10,8 +10,8 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
 
 SHORTEST = 2.6
-"""Shortest window that a diagnosis names, in the actuator's own time. Derived: more than the 0.2 s of the contract for
-every shipped actuator."""
+"""Shortest window that a diagnosis names, in the actuator's own time. Derived: for every shipped actuator more than the
+0.2 s that section 5 of docs/contract.md states."""
 MOST_BINS = 600
 """Steps into which a recording is cut at most; they are half the shortest window, or longer. Work: time and memory grow
 with its square."""

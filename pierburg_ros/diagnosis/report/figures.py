@@ -24,6 +24,7 @@ MEANINGS = {
     "recalibrated": "parameters re-estimated",
     "final": "diagnosed model",
 }
+MODELS = ("nominal", "recalibrated", "final")
 LAGS = 1.0
 """Longest lag [s] of an autocorrelation. Chosen: about the time in which the valve forgets."""
 SCATTERED = 1500
@@ -50,17 +51,23 @@ def time_figure(
             Curve(name, key, colour, error(key), shown=shown),
         )
 
-    own = {key: curves(key, MEANINGS[key], key, key != "nominal") for key in ("nominal", "recalibrated", "final")}
+    own = {key: curves(key, MEANINGS[key], key, key != "nominal") for key in MODELS if key in view.errors}
     rivals = [row for row in tried if row.key in view.errors and row.key != "final"]
     others = [curves(row.key, title(row), f"other-{place % OTHERS}", False) for place, row in enumerate(rivals)]
     unit, noise = diagnosis.unit, diagnosis.fit.noise_floor
     signals = [Curve("measured", "measured", "measured", measured), *(pair[0] for pair in (*own.values(), *others))]
-    before = [own["nominal"][1], own["recalibrated"][1], *(pair[1] for pair in others)]
+    before = [*(own[key][1] for key in MODELS[:2] if key in own), *(pair[1] for pair in others)]
     band = None if noise is None else 1.96 * noise
     panels = [
         Panel("measured and simulated", quantity_title(diagnosis.quantity, unit), signals, 0.34),
         Panel("error of what is switched on", f"error [{unit}]", before, 0.24, band),
-        Panel("error of the diagnosed model; grey: noise", f"error [{unit}]", [own["final"][1]], 0.24, band),
+        Panel(
+            "error of the diagnosed model; grey: noise",
+            f"error [{unit}]",
+            [own[key][1] for key in MODELS[2:] if key in own],
+            0.24,
+            band,
+        ),
         Panel(
             "input",
             driving_title(diagnosis),
@@ -73,7 +80,7 @@ def time_figure(
         for rank, place in enumerate(places, start=1)
     ]
     spans += [Span(start, end, missing=True) for start, end, _ in view.left_out]
-    return over_time((f"{prefix}/time", view.time), panels, spans)
+    return over_time((f"{prefix}/time", view.time), [panel for panel in panels if panel.curves], spans)
 
 
 def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Figure:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pierburg_ros.actuators.units import Motion
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.report import figures
@@ -28,6 +30,8 @@ VERDICTS = {
     "unexplained": "something is left that no effect of the catalogue removes",
 }
 """What each verdict means."""
+NOTHING = "nothing is concluded: the signals are not what they are read as"
+"""What a verdict means where the input is at fault."""
 ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
@@ -45,18 +49,18 @@ def write_page(
 def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()) -> str:
     """The report as HTML."""
     diagnosis, exhibits = result.diagnosis, result.exhibits
-    views = exhibits.views
+    views = exhibits.views or (first_view(result),)
     found = places(diagnosis.locations)
     context = {
         "d": diagnosis,
-        "meaning": VERDICTS[diagnosis.verdict],
+        "meaning": NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
         "regimes": [regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
         "places": found,
         "tried": [tried_row(row, place) for place, row in enumerate(in_colours(exhibits.tried))],
         "significant": SIGNIFICANT,
         "shown": 12,  # rows of a table; the others are folded away
         "over_time": time_plots(diagnosis, views, exhibits.tried),
-        "residuals": residual_plots(views, diagnosis.unit, diagnosis.motion),
+        "residuals": residual_plots(exhibits.views, diagnosis.unit, diagnosis.motion),
         "laws": law_plots(result),
         "torques": torque_plots(diagnosis),
         "limits": limit_plots(result),
@@ -184,6 +188,15 @@ def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
         "time": regime.share_of_time,
         "chance": regime.chance,
     }
+
+
+def first_view(result: Result) -> View:
+    """The first recording where nothing is concluded of it: as measured, and what the models make of it."""
+    signals = result.signals
+    errors = {key: signals["measured"] - signals[key] for key in figures.MODELS}
+    errors = {key: error for key, error in errors.items() if np.isfinite(error).all()}
+    time, measured, command = (signals[name] for name in ("time", "measured", "command"))
+    return View(result.diagnosis.recordings[0], time, measured, command, time[:0], time[:0], errors)
 
 
 def signals_of(view: View) -> dict[str, Signal]:

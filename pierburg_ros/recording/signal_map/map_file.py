@@ -13,7 +13,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.intake import Document, parsed, text_of
 from pierburg_ros.recording.signal_map.field_path import FieldPath, field_path
 from pierburg_ros.recording.signal_map.source import SignalMap, Source, TimeSource
-from pierburg_ros.recording.signal_map.units import COUNTS, Unit, unit_of
+from pierburg_ros.recording.signal_map.units import COUNTS, USUAL, Unit, unit_of
 from pierburg_ros.recording.signals import SIGNALS, TIME, near, signal_of
 
 KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
@@ -173,7 +173,10 @@ class Entry:
         try:
             unit = unit_of(written)
         except ValueError:
-            raise self.wrong("unit", shown(written), self.units(wanted)) from None
+            fitting = [unit for unit in USUAL if any(unit_of(unit).measures(each) for each in wanted)]
+            meant = [unit for unit in fitting if unit.lower() == written.lower()]
+            hint = f" Did you mean {meant[0]}?" if meant else near(written, fitting)
+            raise self.wrong("unit", shown(written), self.units(wanted), hint) from None
         if not any(unit.measures(each) for each in wanted):
             raise self.wrong("unit", written, self.units(wanted))
         return unit
@@ -221,9 +224,9 @@ class Entry:
         """Where the signal, or a key of it, stands."""
         return f"{self.name}{self.document.line(self.signal, *key)}: {self.signal}"
 
-    def wrong(self, key: str, found: str, expected: str) -> InputError:
+    def wrong(self, key: str, found: str, expected: str, hint: str = "") -> InputError:
         """What to say of the value under `key`."""
-        return InputError(f"{self.place(key)} found the {key} {found}, expected {expected}.")
+        return InputError(f"{self.place(key)} found the {key} {found}, expected {expected}.{hint}")
 
 
 def shown(value: Any) -> str:

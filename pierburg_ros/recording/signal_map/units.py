@@ -30,6 +30,11 @@ OTHERS: dict[str, tuple[float, dict[str, int]]] = {
     "°C": (1.0, {"degC": 1}),
 }
 """Factor to SI and exponents of the units of SI, for units that are none of it."""
+USUAL = (
+    *("V", "mV", "A", "mA", "uA", "N.m", "mN.m", "N", "rad", "mrad", "deg", "rev", "rad/s", "deg/s", "rpm", "m", "mm"),
+    *("m/s", "mm/s", "s", "ms", "us", "ns", "degC", "percent", "counts"),
+)
+"""Units that a wrong one may be meant for."""
 COUNTS = "counts"
 """Steps of a converter: what one is worth is the scale of its signal."""
 LONGEST = 40

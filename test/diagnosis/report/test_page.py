@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -10,8 +11,10 @@ from support.reports import LEFT, TIME, diagnosis, result
 
 from pierburg_ros.diagnosis.report.figures import autocorrelation, signal_figure, torque_figure, trend_figure
 from pierburg_ros.diagnosis.report.page import headline, write_page
+from pierburg_ros.diagnosis.report.page import page as page_of
 from pierburg_ros.diagnosis.report.picture import picture
-from pierburg_ros.diagnosis.result import View
+from pierburg_ros.diagnosis.result import Exhibits, View
+from pierburg_ros.diagnosis.schema import InputFault
 
 
 @pytest.fixture(scope="module")
@@ -126,3 +129,16 @@ def test_names_from_files_are_text_on_page_and_picture(tmp_path):
     write_page(tmp_path / "report.html", hostile)
     assert "<script>alert" not in (tmp_path / "report.html").read_text()
     picture(hostile).savefig(tmp_path / "overview.png")
+
+
+def test_a_refused_recording_is_shown_without_any_model():
+    """Nothing is simulated of signals at fault, so nothing may look like a model that fits."""
+    plain = result(
+        input_faults=[InputFault(recording="a", signal="duty", what="turned", evidence="so", mend="sign: -1")]
+    )
+    nothing = dict.fromkeys(("nominal", "recalibrated", "final"), np.full(TIME.size, np.nan))
+    refused = replace(plain, signals={**plain.signals, **nothing}, exhibits=Exhibits())
+    written = page_of(refused)
+    plot = json.loads(re.search(r'data-plot="time-0">(.*?)</script>', written).group(1))
+    assert {trace["meta"]["label"] for trace in plot["data"]} == {"measured", "input"}
+    assert "nothing is concluded" in written and "sign: -1" in written

@@ -4,6 +4,7 @@ import pytest
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
 from pierburg_ros.diagnosis.schema import BaseParameter, Effect, NotTestable
 from pierburg_ros.diagnosis.verdict.conclusion import Support
@@ -23,8 +24,9 @@ TIED = Effect(
         (Support(0.99, gain=812.34), "leaves 812 more in chi-squared"),
         (Support(1.0), "All samples lie on this grid"),
         (Support(0.8, left_out=LeftOut(0.0213, 0.0104, 3, 4)), "0.0104 V with it; it helps in 3 of 4"),
+        (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
     ],
-    ids=["evidence", "grid", "recordings left out"],
+    ids=["evidence", "grid", "recordings left out", "beside what remains"],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")

@@ -94,6 +94,8 @@ def test_a_topic_or_column_s_own_name_stands_for_its_signal(name, signal):
         ("duty: {topic: /a, sign: 0}\n", "duty found the sign 0, expected 1 or -1."),
         ("duty: {topic: /a, sign: true}\n", "duty found the sign True, expected 1 or -1."),
         ("duty: {topic: /a, unit: furlong}\n", "duty found the unit 'furlong', expected one of 1, percent"),
+        ("hall_voltage: {topic: /a, unit: mv}\n", "Did you mean mV?"),
+        ("position: {topic: /a, unit: degs}\n", "Did you mean deg?"),
         ("duty: {topic: /a, unit: deg}\n", "duty found the unit deg, expected one of 1, percent"),
         ("position: {topic: /a, unit: rpm}\n", "position found the unit rpm, expected one of rad, deg, mrad or m"),
         ("hall_voltage: {topic: /a, unit: counts}\n", "the unit counts, expected a scale too, in V per count."),

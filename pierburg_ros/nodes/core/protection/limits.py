@@ -32,6 +32,7 @@ class Limits:
     supply_voltage: float  # [V]
     closes_below: float  # duties below this move a shaft that is not at its closed stop [1]
     opens_above: float  # duties above this move a shaft that is not at its open stop [1]
+    described_current: float = 0.0  # that the winding bears for ever, by the actuator's description [A]; 0: not said
 
     @property
     def stall_current(self) -> float:
@@ -40,8 +41,8 @@ class Limits:
 
     @property
     def rated_current(self) -> float:
-        """Current that the winding is assumed to bear for ever [A]."""
-        return RATED_SHARE * self.stall_current
+        """Current that the winding bears for ever, as described or else assumed [A]."""
+        return self.described_current or RATED_SHARE * self.stall_current
 
 
 def limits_of(actuator: Actuator, values: Mapping[str, float] | None = None) -> Limits:
@@ -64,6 +65,7 @@ def limits_of(actuator: Actuator, values: Mapping[str, float] | None = None) -> 
         supply,
         closes_below=(weakest - friction) * per_torque,
         opens_above=(strongest + friction) * per_torque,
+        described_current=actuator.winding.rated_current if actuator.winding else 0.0,
     )
 
 
@@ -74,6 +76,8 @@ def nominal(actuator: Actuator) -> dict[str, float]:
 
 def load_torques(actuator: Actuator, value: Mapping[str, float]) -> tuple[float, float]:
     """Weakest and strongest torque [N.m] that closes, of spring or pendulum, between the stops."""
+    if actuator.load == "none":
+        return 0.0, 0.0
     if actuator.load == "pendulum":
         return -value["gravity_torque"], value["gravity_torque"]
     travel = actuator.upper_stop if math.isfinite(actuator.upper_stop) else math.pi / 2

@@ -1,9 +1,12 @@
 """Limits derived from an actuator against its simulator."""
 
+from dataclasses import replace
+
 import pytest
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.nodes.core.protection.limits import limits_of
+from pierburg_ros.actuators.actuator import Winding
+from pierburg_ros.nodes.core.protection.limits import limits_of, load_torques
 from pierburg_ros.plant import Model, Plant
 
 ACTUATOR = read_actuator("pierburg")
@@ -38,3 +41,13 @@ def test_without_a_supply_no_duty_is_said_to_move_the_shaft():
     limits = limits_of(ACTUATOR, {"supply_voltage": 0.0})
     assert limits.closes_below < -1.0
     assert limits.opens_above > 1.0
+
+
+def test_a_described_winding_says_what_it_bears_for_ever():
+    described = replace(read_actuator("pierburg"), winding=Winding(0.8, 20.0, "data sheet"))
+    assert limits_of(described).rated_current == 0.8
+    assert limits_of(read_actuator("pierburg")).rated_current == pytest.approx(13.5 / 4.139 / 3.0, rel=0.05)
+
+
+def test_a_free_rotor_has_no_load():
+    assert load_torques(read_actuator("odrive"), {}) == (0.0, 0.0)

@@ -1,0 +1,140 @@
+"""The slips that are looked for: each is what someone wrote down wrongly, and the change of a signal that undoes it.
+
+A slip is data. A new one is one line here; nothing else names it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.audit.signals import Signals
+from pierburg_ros.plant import Model
+
+INSIDE = 0.05
+"""Share of the span by which lowest and highest reading may miss the ends that they are taken for. Chosen: sensors are
+set less well than that by nobody, and a wrong divider is off by a third."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """What may be wrong with a signal, the line of the signal map that mends it, and the signals as they then are."""
+
+    signal: str
+    what: str
+    mend: str
+    mended: Signals
+
+
+Change = Callable[[Signals], Signals]
+
+
+def slips(signals: Signals, nominal: Model) -> Iterator[Slip]:
+    """Every slip with a name that these signals may hold."""
+    yield from _of_input(signals)
+    yield from _of_sensor(signals, nominal)
+    yield from _of_time(signals)
+    if signals.inputs.supply_voltage is not None:
+        yield _mapped("supply_voltage", "millivolts read as volts", "scale: 0.001", signals.supplied_with(1e-3))
+
+
+def _of_input(signals: Signals) -> Iterator[Slip]:
+    name = signals.input
+    yield _mapped(name, "polarity reversed", "sign: -1", signals.driven_by(-1.0))
+    if name == "duty":
+        yield _mapped(name, "a hundredth of the fraction", "scale: 100", signals.driven_by(100.0))
+        if np.min(signals.inputs.command) >= 0.0:
+            yield _mapped(name, "0.5 stands for no duty", "scale: 2, offset: -1", signals.driven_by(2.0, -1.0))
+        return
+    yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.driven_by(1e-3))
+    yield _mapped(name, "whole units read as thousandths", "scale: 1000", signals.driven_by(1e3))
+
+
+def _of_sensor(signals: Signals, nominal: Model) -> Iterator[Slip]:
+    name = signals.quantity
+    if name == "hall_voltage":
+        yield from _of_voltage(signals, nominal)
+    else:
+        yield _mapped(name, "polarity reversed", "sign: -1", signals.measured_as(-1.0))
+        yield _mapped(name, "degrees read as radians", "unit: deg", signals.measured_as(math.pi / 180.0))
+        yield _mapped(
+            name, "radians read as degrees", f"scale: {180 / math.pi:.6g}", signals.measured_as(180 / math.pi)
+        )
+        yield _mapped(name, "turns read as radians", f"scale: {math.tau:.6g}", signals.measured_as(math.tau))
+        yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.measured_as(1e-3))
+        gear = nominal.values.get("gear_ratio", 1.0)
+        if gear != 1.0:
+            yield _mapped(
+                name, "of the motor, before the gear", f"scale: {1.0 / gear:.6g}", signals.measured_as(1.0 / gear)
+            )
+        for bits in (10, 12, 13, 14, 16) if _is_counted(signals) else ():
+            scale = math.tau / 2**bits
+            what = f"counts read as radians ({2**bits} a turn)"
+            yield _mapped(name, what, f"scale: {scale:.6g}", signals.measured_as(scale))
+
+
+def _of_voltage(signals: Signals, nominal: Model) -> Iterator[Slip]:
+    ends = nominal.values["hall_voltage_closed"] + nominal.values["hall_voltage_open"]
+    name = signals.quantity
+    reversed_ = f"sign: -1, offset: {ends:.6g}"
+    yield _mapped(name, "polarity reversed", reversed_, signals.measured_as(-1.0, ends))
+    yield _mapped(name, "negated", "sign: -1", signals.measured_as(-1.0))
+    yield _mapped(name, "millivolts read as volts", "scale: 0.001", signals.measured_as(1e-3))
+    yield _mapped(name, "volts read as millivolts", "scale: 1000", signals.measured_as(1e3))
+    for bits in (8, 10, 12, 16) if _is_counted(signals) else ():
+        for full in (3.3, 5.0):
+            scale = full / (2**bits - 1)
+            what = f"counts read as volts ({bits} bit over {full:g} V)"
+            yield _mapped(name, what, f"scale: {scale:.6g}", signals.measured_as(scale))
+
+
+def between_stops(signals: Signals, nominal: Model) -> Iterator[Slip]:
+    """A scale or a zero with which the lowest reading lies on one stop, or the highest on the other."""
+    low, high = np.percentile(signals.measured, [1.0, 99.0])
+    ends = _ends(signals, nominal)
+    if high == low or not np.all(np.isfinite(ends)):
+        return
+    name, span = signals.quantity, ends[1] - ends[0]
+    for read, true in ((low, ends[0]), (high, ends[1])):
+        offset = true - read
+        mend = f"offset: {offset:.4g}"
+        if abs(offset) > INSIDE * abs(span):
+            yield _mapped(name, f"zero off by {-offset:.4g}", mend, signals.measured_as(1.0, offset))
+        if read != 0.0 and true / read > 0.0 and abs(true / read - 1.0) > INSIDE:
+            scale = true / read
+            yield _mapped(name, f"scale off by {1.0 / scale:.4g}", f"scale: {scale:.4g}", signals.measured_as(scale))
+    scale = span / (high - low)
+    offset = ends[0] - scale * low
+    if scale > 0.0:
+        yield _mapped(
+            name,
+            "scale and zero wrong",
+            f"scale: {scale:.4g}, offset: {offset:.4g}",
+            signals.measured_as(scale, offset),
+        )
+
+
+def _ends(signals: Signals, nominal: Model) -> tuple[float, float]:
+    """What the sensor gives at the lower and the upper stop."""
+    if signals.quantity == "hall_voltage":
+        return nominal.values["hall_voltage_closed"], nominal.values["hall_voltage_open"]
+    return nominal.actuator.lower_stop, nominal.actuator.upper_stop
+
+
+def _of_time(signals: Signals) -> Iterator[Slip]:
+    for unit, scale, name in (("ms", 1e-3, "milliseconds"), ("us", 1e-6, "microseconds"), ("ns", 1e-9, "nanoseconds")):
+        yield _mapped("time", f"{name} read as seconds", f"unit: {unit}", signals.timed_in(scale))
+    yield _mapped("time", "seconds read as milliseconds", "unit: s", signals.timed_in(1e3))
+
+
+def _mapped(signal: str, what: str, entries: str, mended: Signals) -> Slip:
+    return Slip(signal, what, f"`{signal}: {{{entries}}}`", mended)
+
+
+def _is_counted(signals: Signals) -> bool:
+    """Whether every value is a whole number, and not always the same few."""
+    values = signals.measured
+    return bool(np.all(values == np.round(values)) and np.ptp(values) > 20.0)

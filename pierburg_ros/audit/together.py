@@ -1,0 +1,64 @@
+"""Several recordings of one actuator: one set of numbers must do for all of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.audit.explained import FARTHEST, FULL, RELUCTANCE, STEP, Explained, Fit
+from pierburg_ros.audit.fault import Fault
+from pierburg_ros.audit.signals import Signals
+from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.plant import Model
+
+ALONE = 0.9
+"""Share of the motion that its own numbers explain, from which a recording tells of them. Chosen: with less, missing
+physics takes the numbers elsewhere in each recording."""
+LEFT = 0.2
+"""Share of the motion that common numbers leave, from which recordings are of two actuators. Measured: 0.13 at most for
+two recordings of one actuator (n = 31 pairs), whose winding had become hot in one of them."""
+MOST = 5
+"""Recordings that are held against the first one. Work: half a second each."""
+
+Pair = tuple[Signals, Explained]
+
+
+def apart(pairs: Sequence[Pair], nominal: Model) -> list[Fault]:
+    """The recordings that are not of the actuator of the first one; those that tell too little are left aside."""
+    told = [(signals, found) for signals, found in pairs if found.share >= ALONE]
+    return [fault for other in told[1 : MOST + 1] if (fault := _apart(told[0], other, nominal)) is not None]
+
+
+def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:
+    shares = common(first, other, nominal)
+    if 1.0 - min(shares) < LEFT:
+        return None
+    values = [found.model.values for _, found in (first, other)]
+    names = Fit(first[0], nominal).names
+    name = max(names, key=lambda each: abs(math.log(values[1][each] / values[0][each])))
+    evidence = (
+        f"Its own numbers explain {100 * other[1].share:.0f} % of the motion, those of {first[0].name}"
+        f" {100 * first[1].share:.0f} %; one set of numbers leaves {100 * (1.0 - min(shares)):.0f} %. They"
+        f" differ most in {name}: {values[0][name]:.3g} there, {values[1][name]:.3g} here."
+    )
+    what = f"of another actuator than {first[0].name}, or of one that was changed"
+    return Fault(other[0].name, "recording", what, evidence, "diagnose the recordings one by one")
+
+
+def common(first: Pair, other: Pair, nominal: Model) -> list[float]:
+    """Shares of the two motions that one set of numbers explains."""
+    fits = [Fit(signals, nominal, found.length) for signals, found in (first, other)]
+    size = len(fits[0].names)
+
+    def cost(point: Signal) -> Signal:
+        left = [fit.left(fit.model(point)) for fit in fits]
+        return np.concatenate([RELUCTANCE * point, *(each / math.sqrt(each.size) for each in left)])
+
+    begins = (fit.point(found.model) for fit, (_, found) in zip(fits, (first, other), strict=True))
+    begin = min(begins, key=lambda point: float(np.sum(np.square(cost(point)))))
+    bound = np.full(size, FARTHEST)
+    found = minimise(cost, np.clip(begin, -bound, bound), -bound, bound, np.full(size, STEP), FULL, 1e-3)
+    return [fit.share(fit.model(found.point)) for fit in fits]

@@ -1,0 +1,99 @@
+"""`pierburg actuator new` and `check`: describe an actuator, and say what is implausible about a description."""
+
+from __future__ import annotations
+
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.actuators.writing import description_text
+from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.errors import InputError
+from pierburg_ros.identification.description.derived import derived
+from pierburg_ros.identification.description.questions import Question, answered
+from pierburg_ros.identification.description.recorded import alike, identified
+from pierburg_ros.identification.description.slips import remarks
+from pierburg_ros.identification.description.told import told
+from pierburg_ros.library.output import write_whole
+from pierburg_ros.library.reading import read
+from pierburg_ros.plant import Model
+
+
+class Action(str, Enum):
+    """What to do with a description."""
+
+    new = "new"
+    check = "check"
+
+
+def actuator(
+    action: Annotated[Action, typer.Argument(help="new: write a description. check: say what is implausible.")],
+    file: Annotated[Path, typer.Argument(help="The description (YAML); to check also the name of a shipped one.")],
+    from_recording: Annotated[Path | None, typer.Option(help="Start from what this recording tells.")] = None,
+    like: Annotated[
+        str | None, typer.Option(help="Actuator whose numbers stand where the recording tells none.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it is there.")] = False,
+    signals: SignalsOption = None,
+    topic: TopicOption = None,
+    time: TimeOption = None,
+    jobs: JobsOption = None,
+) -> None:
+    """Describe an actuator, from answers or from a recording, or check a description.
+
+    `new` asks what it needs, or identifies it from a recording and marks what it guessed.
+    `check` derives speeds, torques and times, names numbers that look like slips, and says which numbers no recording
+    of its signals can tell.
+    """
+    console = terminal()
+    if action is Action.check:
+        check(console, file)
+        return
+    if file.exists() and not overwrite:
+        raise InputError(f"{file} is there already, expected a new file. Name another one, or add --overwrite.")
+    if from_recording is None:
+        content = answered(asked)
+    else:
+        start = None if like is None else read_actuator(like)
+        recording = read(from_recording, time=time, topics=topics_of(topic), signals=signals, actuator=start)
+        content = identified(recording, start or read_actuator(alike(recording)), file.stem, jobs)
+    text = description_text(content, file.name)
+    write_whole(file, text)
+    console.print(f"Wrote {file}. Check it: pierburg actuator check {file}", soft_wrap=True)
+
+
+def asked(question: Question) -> str:
+    """A person's answer to a question; InputError where there is nobody to answer."""
+    choices = f" ({', '.join(question.choices)})" if question.choices else ""
+    try:
+        return str(typer.prompt(question.text + choices, default=question.default, show_default=bool(question.default)))
+    except typer.Abort:
+        raise InputError(
+            f"Found no answer to {question.text!r}, expected one. Answer at a terminal, or use --from-recording."
+        ) from None
+
+
+def check(console: Console, file: Path) -> None:
+    """Print derived numbers, remarks, and what a standard excitation of the description would tell."""
+    described = read_actuator(str(file))
+    shown = Table(title=Text(f"{described.title}: what the numbers imply"))
+    for heading in ("number", "value", "plausible"):
+        shown.add_column(heading)
+    for each in derived(described):
+        unit = "" if each.unit == "1" else f" {each.unit}"
+        shown.add_row(each.name, f"{each.value:.4g}{unit}", "yes" if each.plausible else "NO")
+    console.print(shown)
+    found = remarks(described)
+    lines = [f"{remark.about}: {remark.what}" for remark in found] or ["Nothing is implausible."]
+    console.print("\n".join(lines), soft_wrap=True, markup=False)
+    signals = f"{described.input} and {described.quantity.replace('_', ' ')}"
+    reasons = [f"  {name}: {finding.reason}" for name, finding in told(Model.nominal(described)).items()]
+    console.print(f"What a recording of {signals} tells:", *reasons, sep="\n", soft_wrap=True, markup=False)

@@ -1,0 +1,1 @@
+"""What a description of an actuator implies: derived numbers, slips in it, and what recordings could tell of it."""

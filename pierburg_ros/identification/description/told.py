@@ -1,0 +1,46 @@
+"""What recordings of an actuator could tell of its numbers: a standard excitation of the description, simulated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pierburg_ros.identification.fit import fit
+from pierburg_ros.identification.identifiability import Finding, identifiability
+from pierburg_ros.identification.identify import free_names
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.plant.simulate import refuse_unsimulated
+from pierburg_ros.recording import Channel, Recording
+
+SAMPLES = 6000
+"""Samples of the simulated bench. Work: a fit of them takes seconds."""
+LEVELS = 60
+"""Levels of the input, each held for the same time. Chosen: 100 samples each, from a fraction of a movement to some."""
+HELD = (0.5, 1.5, 6.0)
+"""Times for which levels are held in turn, in the times in which the actuator crosses its travel. Chosen: too short to
+settle, and long enough."""
+STRENGTH = 0.6
+"""Largest level, as a share of the actuator's own large input. Chosen: full input holds the shaft at a stop."""
+RESOLUTION = 1e-3
+"""Noise of the simulated sensor, as a share of its own large reading. Chosen: that of a 10 bit converter."""
+
+
+def told(model: Model, seed: int = 0) -> dict[str, Finding]:
+    """What a recording of a standard excitation tells of each number of `model`; InputError where it cannot be run."""
+    recording = bench(model, seed)
+    fitted = fit(model, [recording], free_names(model), starts=1, refine=False, tolerance=1e-3, jobs=1)
+    return identifiability(fitted, [recording])
+
+
+def bench(model: Model, seed: int = 0) -> Recording:
+    """A simulated recording: random levels of the input, short and long, after a moment of rest."""
+    random = np.random.default_rng(seed)
+    scales, actuator = model.scales, model.actuator
+    largest = STRENGTH * {"duty": 1.0, "current": scales.current, "torque": scales.torque}[actuator.input]
+    lengths = scales.time * np.resize(HELD, LEVELS)
+    changes = np.concatenate([[0.0], scales.time + np.cumsum(lengths)])
+    command = Channel(changes[:-1], np.concatenate([[0.0], largest * random.uniform(-1.0, 1.0, LEVELS - 1)]))
+    time = np.linspace(0.0, changes[-1], SAMPLES)
+    clean = simulate(model, Inputs(command.time, command.values), time)
+    refuse_unsimulated(model, clean, time)
+    measured = clean + RESOLUTION * scales.reading * random.standard_normal(time.size)
+    return Recording(f"a bench of {actuator.name}", actuator.quantity, time, measured, command, input=actuator.input)

@@ -1,0 +1,92 @@
+"""The audit blames the signal that was changed, and none where only the actuator differs from its description."""
+
+import importlib.util
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.audit import audit
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Channel
+
+SPEC = importlib.util.spec_from_file_location(
+    "input_faults", Path(__file__).parent.parent.parent / "benchmarks/input_faults.py"
+)
+faults = sys.modules["input_faults"] = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(faults)
+
+VALVE = Model.nominal(read_actuator("pierburg"))
+TIME = np.arange(6000) / 500.0
+
+
+def steps(seed, low=-0.1, high=0.4):
+    """Duties [1] held for 0.4 s, of which some take the valve to either stop, some leave it between."""
+    return np.repeat(np.random.default_rng(seed).uniform(low, high, 30), 200)
+
+
+def recorded(seed=1, **changes):
+    """A recording of a valve that differs from the description by `changes`, `effect__parameter` for dotted names."""
+    values = {name.replace("__", "."): value for name, value in changes.items()}
+    setpoints = Channel(TIME[::200], np.random.default_rng(seed + 50).uniform(0.0, 1.5, 30))
+    return replace(synthetic_recording(VALVE.with_values(values), TIME, steps(seed)), setpoints=setpoints)
+
+
+FOUND = [fault for fault in faults.FAULTS if "valve" in fault.on]
+HIDDEN = {
+    "duty: setpoint in its place [rad]": "these setpoints are not what this valve followed",
+    "duty: setpoint in its place, share of the travel": "these setpoints are not what this valve followed",
+    "duty: logged at a tenth of the rate": "a duty in force for 0.4 s is logged ten times as often",
+}
+
+
+@pytest.mark.parametrize("fault", [f for f in FOUND if f.name not in HIDDEN], ids=lambda fault: fault.name)
+def test_names_the_signal_that_is_not_what_it_is_read_as(fault):
+    lines = faults.told(fault.make, recorded(), recorded(2), VALVE)
+    assert faults.is_found(fault, lines), lines
+
+
+DIFFERENT = [
+    {},
+    {"armature_resistance": 4.139 * 6.0 / 4.0},
+    {"coulomb_friction": 0.05},
+    {"spring_preload": 0.4, "torque_constant": 0.018},
+    {"static_friction__breakaway_torque": 0.35, "static_friction__stribeck_velocity": 0.1},
+    {"input_delay__delay": 0.04},
+    {"sensor_lag__time_constant": 0.025},
+    {"pwm_deadband__width": 0.03},
+    {"backlash__gap": 0.1, "backlash__motor_friction_share": 0.5},
+    {"stop_compliance__stiffness": 6.0, "stop_compliance__damping": 0.01},
+    {"sensor_nonlinearity__amplitude": 0.05, "sensor_nonlinearity__half_waves": 1.0},
+    {"hall_voltage_closed": 0.55, "hall_voltage_open": 4.6},
+]
+
+
+@pytest.mark.parametrize("changes", DIFFERENT, ids=lambda changes: ", ".join(changes) or "as described")
+def test_an_actuator_that_differs_from_its_description_is_no_fault(changes):
+    assert audit([recorded(**changes)], VALVE) == []
+
+
+def test_a_late_answer_is_no_fault_and_an_early_one_is():
+    one = recorded()
+    late, early = (replace(one, command=Channel(one.command.time + by, one.command.values)) for by in (-0.03, 0.03))
+    assert audit([late], VALVE) == []
+    (fault,) = audit([early], VALVE)
+    assert fault.signal == "duty" and "30 ms late" in fault.what
+
+
+def test_a_shaft_that_stands_still_is_not_held_against_anything():
+    one = recorded()
+    resting = replace(one, command=Channel(one.time, np.zeros(one.time.size)), measured=one.measured[0] + 0.0 * TIME)
+    assert audit([resting], VALVE) == []
+
+
+def test_what_it_says_mends_the_signal():
+    one = recorded()
+    (fault,) = audit([replace(one, measured=1000.0 * one.measured)], VALVE)
+    assert (fault.signal, fault.mend) == ("hall_voltage", "`hall_voltage: {scale: 0.001}`")
+    assert str(fault).startswith("simulated: hall_voltage: millivolts read as volts. It reads ")
