@@ -169,10 +169,17 @@ def tried_row(row: Tried, place: int) -> dict[str, Any]:
         "row": row,
         "name": f"diagnosed model, {title(row)}" if off else title(row),
         "colour": "final" if row.key == "final" else f"other-{(place - 1) % OTHERS}",
-        "status": "switched off, nothing fitted again" if off else row.status,
+        "status": standing(row),
         "lack": "" if off or row.status == "chosen" else f"{row.lack:,.0f}",
         "drawn": bool(row.key),
     }
+
+
+def standing(row: Tried) -> str:
+    """The status of an explanation in words; one may fit better where something remains or time was over."""
+    if row.name.startswith(OFF):
+        return "switched off, nothing fitted again"
+    return "fits better, not chosen" if row.lack < -SIGNIFICANT else row.status
 
 
 def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:

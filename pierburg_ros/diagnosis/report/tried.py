@@ -7,7 +7,8 @@ from dataclasses import replace
 from pierburg_ros.diagnosis.result import Tried
 from pierburg_ros.diagnosis.schema import Status
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import tied
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, tied
+from pierburg_ros.diagnosis.search.selection import alike as closest
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.estimation.data import rms
 from pierburg_ros.estimation.estimator import Fit
@@ -42,9 +43,10 @@ def distinct(found: Found, chosen: Fit) -> list[Fit]:
 
 
 def statuses(found: Found, chosen: Fit) -> dict[str, Status]:
-    """By name: chosen; tied, which fit alike without containing the chosen one; or rejected."""
+    """By name: chosen; tied, which fit neither worse nor better without containing the chosen one; or rejected."""
     own = set(quantities(chosen.explanation))
-    equals = tied(chosen, found.fits.values(), found.estimator)
+    least = 2.0 * chosen.misfit - closest(chosen)
+    equals = [fit for fit in tied(chosen, found.fits.values(), found.estimator) if fit.misfit >= least]
     alike = {identifier(fit) for fit in equals if not own < set(quantities(fit.explanation))}
     if not own:
         alike = set()
@@ -55,15 +57,18 @@ def statuses(found: Found, chosen: Fit) -> dict[str, Status]:
 
 
 def rivals(found: Found, conclusion: Conclusion) -> list[tuple[Tried, Fit]]:
-    """The chosen explanation with its last values, what ties with it, and every other one of its size, best first.
+    """The chosen explanation with its last values, what ties with it or fits better, and all others of its size.
 
     Where nothing was added to the nominal model, what one quantity more would have gained.
     """
     chosen = conclusion.chosen
     status = statuses(found, chosen)
     size = max(chosen.explanation.size, 1)
+    clear = chosen.misfit - SIGNIFICANT * chosen.repetition
     others = [
-        fit for fit in distinct(found, chosen)[1:] if status[identifier(fit)] == "tied" or fit.explanation.size == size
+        fit
+        for fit in distinct(found, chosen)[1:]
+        if status[identifier(fit)] == "tied" or fit.explanation.size == size or fit.misfit < clear
     ]
     others.sort(key=lambda fit: (status[identifier(fit)] != "tied", fit.chi2))
     rows = [(_row(found, conclusion, conclusion.final, "chosen", identifier(chosen)), conclusion.final)]
