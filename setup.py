@@ -67,7 +67,20 @@ setup(
     maintainer_email="maintainers@pierburg-ros.example.org",
     python_requires=">=3.10,<3.14",
     packages=find_packages(exclude=["test", "test.*"]),
-    package_data={PACKAGE: ["py.typed", "actuators/*.yaml", "diagnosis/report/*.html", "cli/*.html", "cli/*.yaml"]},
+    package_data={
+        PACKAGE: [
+            "py.typed",
+            "actuators/*.yaml",
+            "cli/*.html",
+            "cli/*.yaml",
+            "comparison/*.html",
+            "diagnosis/report/*.html",
+            "identification/*.html",
+            "pages/*.css",
+            "pages/*.html",
+            "pages/*.js",
+        ]
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),

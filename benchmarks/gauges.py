@@ -159,6 +159,8 @@ def table(lines: list[dict[str, Any]]) -> Iterator[str]:
         windows = [alike_windows(base["windows"], other["windows"]) for base, other in pairs]
         apart = [difference(base["values"], other["values"]) for base, other in pairs]
         n = len(pairs)
+        if n == 0:
+            continue
         close = sum(each < ALIKE for each in apart)
         worst = max((each for each, named in zip(apart, same, strict=True) if named), default=0.0)
         yield f"| {name} | {sum(same)} of {n} | {sum(windows)} of {n} | {close} of {n} | {worst:.1g} |"

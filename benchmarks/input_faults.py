@@ -161,12 +161,10 @@ def is_found(fault: Made, lines: list[str]) -> bool:
 
 VALVE, BENCH, PENDULUM = (Model.nominal(read_actuator(name)) for name in ("pierburg", "xl330", "ak80"))
 RUNS = {
-    "valve": [(f"practice-{one:02}", f"practice-{(one + 5) % 22:02}") for one in (1, 3, 5, 10, 12, 13, 19, 21)],
+    "valve": [(f"practice-{one:02}", f"practice-{(one + 5) % 22:02}") for one in (1, 10, 13, 19)],
     "bench": [
         ("kp100_sin_sin", "kp400_sin_time_square"),
         ("kp100_lift_and_drop", "kp400_sin_sin"),
-        ("kp100_sin_time_square", "kp400_sin_sin"),
-        ("kp400_sin_sin", "kp400_lift_and_drop"),
         ("kp400_up_and_down", "kp100_sin_sin"),
     ],
 }
@@ -185,9 +183,9 @@ def main() -> None:
     parser.add_argument("--shared", type=Path, default=Path("../shared"))
     parser.add_argument("--output", type=Path, default=PAGE)
     options = parser.parse_args()
+    clean = [row for kind in (practice(options.shared), real(options.shared), simulated(), drifted()) for row in kind]
     rows, slowest = faulty(options.shared)
     rows += [two_valves(options.shared)]
-    clean = [row for kind in (practice(options.shared), real(options.shared), simulated(), drifted()) for row in kind]
     options.output.write_text(page(rows, clean, slowest), encoding="utf-8")
 
 
@@ -221,6 +219,7 @@ def two_valves(shared: Path) -> tuple[str, str, int, int]:
             other = bench(VALVE.with_values(changes), number)
             found += any(fault.signal == "recording" for fault in audit([one, other], VALVE))
             tried += 1
+    print("two different valves as one", "valve", found, tried, sep=", ", flush=True)
     return "two different valves as one", "valve", found, tried
 
 
@@ -309,9 +308,10 @@ verdict is `unexplained` without an effect, and the exit status is 0, for the co
 `identify` and `replay` print the same lines as a warning, and `inspect --actuator` as a hint. A late answer is no fault
 (delay and lag are physics), and what equals a drift by less than a factor of 6 is a drift.
 
-Found: {found} of {tried} faults, at most {slowest:.1f} s an audit, on a machine whose two cores were busy. Each is made
-of practice recordings (valve) or real ones (bench, the XL330 servo). Found means that the right signal is blamed in the
-right words. Refusals by the reader, such as that of percent, count where they name what mends them.
+Found: {found} of {tried} faults, at most {slowest:.1f} s an audit by the wall clock (the load was 20 on two cores; it
+takes 0.1 to 2.5 s on cores that are free). Each is made of practice recordings (valve) or real ones (bench, the XL330
+servo). Found means that the right signal is blamed in the right words. Refusals by the reader, such as that of percent,
+count where they name what mends them.
 
 | fault | of | found |
 |---|---|---|

@@ -80,7 +80,7 @@ def add_example(root: Path) -> None:
     )
     import_of_kernels = "from pierburg_ros.kernel import kernel\n"
     replace(path, import_of_kernels, f"from pierburg_ros.effects import output_filter\n{import_of_kernels}")
-    after = "        in_force = duty\n"
+    after = "        in_force = command\n"
     replace(path, after, f"{after}        {line.strip()}\n")
 
 

@@ -28,6 +28,16 @@ def drawn_factor(driven_by: str) -> float:
     return 100.0 if driven_by == "duty" else 1.0
 
 
+def travel_factor(motion: Motion) -> float:
+    """What a place on the travel [rad or m] is multiplied by to be drawn: an angle in degrees."""
+    return math.degrees(1.0) if motion == "rotary" else 1.0
+
+
+def travel_title(motion: Motion) -> str:
+    """Title of an axis of places on the travel."""
+    return "angle [degrees]" if motion == "rotary" else "position [m]"
+
+
 def place(low: float, high: float, motion: Motion) -> str:
     """A range of the travel [rad or m]: in degrees, or in millimetres."""
     factor, unit = (math.degrees(1.0), "degrees") if motion == "rotary" else (1e3, "mm")

@@ -12,6 +12,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.coordinates import in_order
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.estimation.shooting import stretch_length
 from pierburg_ros.plant import Model, simulate
@@ -41,8 +42,8 @@ ENOUGH = 0.5
 """Share of motion, and correlation of velocities, from which the signals are what they are read as. Measured: clean
 recordings (n = 57) reach 0.55 and 0.77 or more, with the duty of other runs velocities agree by 0.4 or less."""
 SHARP = 10
-"""Samples over which a velocity is told, to either side. Chosen: 20 ms at 500 Hz; a duty of another run agrees as
-little over 200 ms."""
+"""Samples over which a velocity is told, to either side. Chosen: 20 ms at 500 Hz; over 200 ms a duty of another run
+agrees as little."""
 BESIDE = 75
 """Samples by which simulated and measured velocities may lie apart. Chosen: 0.15 s at 500 Hz; delays are shorter."""
 SENSOR = ("gear_ratio", "hall_voltage_closed", "hall_voltage_open", "sensor_scale", "sensor_offset")
@@ -136,7 +137,7 @@ class Fit:
         for name, moved in zip(self.names, point, strict=True):
             least, most = self.nominal.range(name)
             values[name] = min(max(self.nominal.values[name] * math.exp(moved), least), most)
-        return self.nominal.with_values(values)
+        return self.nominal.with_values(in_order(values, self.nominal))
 
     def point(self, model: Model) -> Signal:
         """The logarithms by which the numbers of `model` are moved."""

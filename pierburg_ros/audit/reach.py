@@ -35,7 +35,8 @@ def impossible(signals: Signals, nominal: Model, beyond: float = BEYOND) -> tupl
             f" travel in {fastest:.2g} s."
         )
     actuator, supply = nominal.actuator, signals.inputs.supply_voltage
-    if supply is not None and np.median(supply) > (most := nominal.range("supply_voltage")[1]):
+    most = actuator.parameters["supply_voltage"].maximum if actuator.drive == "voltage" else math.inf
+    if supply is not None and np.median(supply) > most:
         return "supply_voltage", f"It is {np.median(supply):.4g} V, and the actuator's at most {most:g} V."
     travel = actuator.upper_stop - actuator.lower_stop
     if signals.quantity == "speed" or not math.isfinite(travel):

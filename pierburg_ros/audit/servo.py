@@ -13,14 +13,14 @@ from pierburg_ros.audit.signals import Signals
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 
-FOLLOWING = (0.01, 0.03, 0.1, 0.3)
-"""Time constants with which a controlled shaft follows its setpoint, as shares of a second [s]. Chosen: a loop that is
-slower does not follow."""
+FOLLOWING = (0.1, 0.3, 1.0, 3.0)
+"""Time constants with which a controlled shaft follows its setpoint, in times in which it crosses its travel. Chosen: a
+loop that is slower does not follow."""
 FOLLOWED = 0.9
 """Share of the motion that a followed setpoint explains, at least. Chosen: a tenth is left to overshoot."""
 BETTER = 0.5
-"""Share of what the actuator leaves unexplained that a followed setpoint may leave. Chosen: half is no close call; not
-varied."""
+"""Share of what the actuator leaves unexplained that a followed setpoint may leave. Chosen: half; a motor whose angle
+happens to follow its input leaves next to nothing as a motor."""
 UNITY = 0.15
 """How far the angle that one unit of the setpoint gives may be from 1 rad. Chosen: a controller that misses by more is
 none."""
@@ -37,8 +37,9 @@ def followed(signals: Signals, given: Explained | None, nominal: Model) -> Fault
         if np.ptp(same) > 0.0 and np.corrcoef(wanted, same)[0, 1] > 1.0 - 1e-6:
             return _fault(signals, "It equals the recorded setpoints.")
     travel = nominal.actuator.upper_stop - nominal.actuator.lower_stop
-    for time_constant in FOLLOWING:
-        known = np.stack([_lagged(signals.time, wanted, time_constant), np.ones(angle.size)], axis=1)
+    for times in FOLLOWING:
+        behind = _lagged(signals.time, wanted, times * nominal.scales.time)
+        known = np.stack([behind, np.ones(angle.size)], axis=1)
         (gain, _), *_ = np.linalg.lstsq(known, angle, rcond=None)
         left = angle - known @ np.linalg.lstsq(known, angle, rcond=None)[0]
         share = 1.0 - float(np.var(left)) / max(float(np.var(angle)), 1e-300)

@@ -19,6 +19,20 @@ INSIDE = 0.05
 set less well than that by nobody, and a wrong divider is off by a third."""
 
 
+ANY: dict[str, tuple[str | None, float]] = {
+    "thousandths read as whole units": (None, 1e-3),
+    "whole units read as thousandths": (None, 1e3),
+}
+TURNING: dict[str, tuple[str | None, float]] = {
+    "degrees read as radians": ("deg", math.pi / 180.0),
+    "radians read as degrees": (None, 180.0 / math.pi),
+    "turns read as radians": (None, math.tau),
+}
+SPINNING: dict[str, tuple[str | None, float]] = {"rpm read as rad/s": ("rpm", math.tau / 60.0)}
+"""Other units of a position or speed, of any actuator and of one that turns: the unit as a signal map calls it, if it
+does, and what one of it is."""
+
+
 @dataclass(frozen=True)
 class Slip:
     """What may be wrong with a signal, the line of the signal map that mends it, and the signals as they then are."""
@@ -57,23 +71,18 @@ def _of_sensor(signals: Signals, nominal: Model) -> Iterator[Slip]:
     name = signals.quantity
     if name == "hall_voltage":
         yield from _of_voltage(signals, nominal)
-    else:
-        yield _mapped(name, "polarity reversed", "sign: -1", signals.measured_as(-1.0))
-        yield _mapped(name, "degrees read as radians", "unit: deg", signals.measured_as(math.pi / 180.0))
-        yield _mapped(
-            name, "radians read as degrees", f"scale: {180 / math.pi:.6g}", signals.measured_as(180 / math.pi)
-        )
-        yield _mapped(name, "turns read as radians", f"scale: {math.tau:.6g}", signals.measured_as(math.tau))
-        yield _mapped(name, "thousandths read as whole units", "scale: 0.001", signals.measured_as(1e-3))
-        gear = nominal.values.get("gear_ratio", 1.0)
-        if gear != 1.0:
-            yield _mapped(
-                name, "of the motor, before the gear", f"scale: {1.0 / gear:.6g}", signals.measured_as(1.0 / gear)
-            )
-        for bits in (10, 12, 13, 14, 16) if _is_counted(signals) else ():
-            scale = math.tau / 2**bits
-            what = f"counts read as radians ({2**bits} a turn)"
-            yield _mapped(name, what, f"scale: {scale:.6g}", signals.measured_as(scale))
+        return
+    yield _mapped(name, "polarity reversed", "sign: -1", signals.measured_as(-1.0))
+    gear = nominal.values.get("gear_ratio", 1.0)
+    others = (SPINNING if name == "speed" else TURNING) if nominal.actuator.motion == "rotary" else {}
+    if gear != 1.0:
+        others = {**others, "of the motor, before the gear": (None, 1.0 / gear)}
+    for what, (unit, scale) in {**ANY, **others}.items():
+        yield _mapped(name, what, f"unit: {unit}" if unit else f"scale: {scale:.6g}", signals.measured_as(scale))
+    for bits in (10, 12, 13, 14, 16) if _is_counted(signals) else ():
+        scale = math.tau / 2**bits
+        what = f"counts read as radians ({2**bits} a turn)"
+        yield _mapped(name, what, f"scale: {scale:.6g}", signals.measured_as(scale))
 
 
 def _of_voltage(signals: Signals, nominal: Model) -> Iterator[Slip]:

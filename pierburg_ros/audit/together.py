@@ -41,7 +41,7 @@ def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:
     name = max(names, key=lambda each: abs(math.log(values[1][each] / values[0][each])))
     evidence = (
         f"Its own numbers explain {100 * other[1].share:.0f} % of the motion, those of {first[0].name}"
-        f" {100 * first[1].share:.0f} %; one set of numbers leaves {100 * (1.0 - min(shares)):.0f} %. They"
+        f" {100 * first[1].share:.0f} %; one set of numbers leaves {100 * min(1.0 - min(shares), 1.0):.0f} %. They"
         f" differ most in {name}: {values[0][name]:.3g} there, {values[1][name]:.3g} here."
     )
     what = f"of another actuator than {first[0].name}, or of one that was changed"

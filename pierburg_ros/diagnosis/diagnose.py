@@ -9,6 +9,7 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
+from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
@@ -58,7 +59,8 @@ def diagnose(
     )
     excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    result = Result(written, conclusion.model, data.runs, signals(longest(data), conclusion))
+    shown = signals(longest(data), conclusion)
+    result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result
 
 

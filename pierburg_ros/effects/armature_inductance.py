@@ -11,7 +11,7 @@ EFFECT = Effect(
     source=PAPER,
     elsewhere=Elsewhere(modelica={"inductance": "{inductance}"}, quantities={"winding_inductance": "inductance"}),
     shows_in="fractions of a millisecond after each change of duty",
-    record="samples at 10 kHz or a current measurement",
+    record="samples at 10 kHz or more",
     parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.0127)),),
     strength=("inductance",),
     typical={"inductance": 0.002530387},

@@ -11,7 +11,7 @@ EFFECT = Effect(
     "friction split between the two sides by motor_friction_share, inertia on the motor side",
     source="Nordin, Gutman, Controlling mechanical systems with backlash - a survey (2002)",
     shows_in="leaving the closed stop after negative duty",
-    record="duty below 0 at the closed stop, then open, several times",
+    record="a push that turns round at rest, as duty below 0 at a closed stop and then open, several times",
     parameters=(
         Parameter(
             "gap",
@@ -43,4 +43,5 @@ EFFECT = Effect(
     linear=True,
     jumps=True,
     drives=MOTORS,
+    play="gap",
 )

@@ -222,6 +222,8 @@ class Effect:
     None: its torque does not turn over the angle."""
     constant_part: tuple[str, str] | None = None
     """A parameter of it that, acting throughout, is the same as a change of a base parameter: both names."""
+    play: str | None = None
+    """The parameter that is the width of a free play [rad]: the driven side follows when that is used up."""
     rounds: str | None = None
     """The parameter that is the step of a converter, seen in the samples and not searched for."""
 

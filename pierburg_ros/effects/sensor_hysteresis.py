@@ -33,6 +33,7 @@ EFFECT = Effect(
     memory="brief",
     linear=True,
     sensors=("hall_voltage", "position"),
+    play="width",
 )
 
 

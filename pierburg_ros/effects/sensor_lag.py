@@ -20,7 +20,7 @@ EFFECT = Effect(
         }
     ),
     shows_in="fast travel and its sharp ends",
-    record="sharp random steps and stop contacts",
+    record="sharp random steps, and contacts with a stop where there is one",
     parameters=(
         Parameter(
             "time_constant", None, "of the first-order lag", "s", 0.0, LARGEST, plausible=(0.021, 0.31), stride=5.0

@@ -18,7 +18,7 @@ EFFECT = Effect(
         modelica={"sensed": "{input} + {amplitude}*sensor_span*sin({half_waves}*pi*({input})/sensor_span)"}
     ),
     shows_in="a smooth error over the angle, at rest too",
-    record="standstills over the whole travel, and runs to both stops",
+    record="standstills over the whole travel, and runs to both stops where there are such",
     parameters=(
         Parameter(
             "amplitude",

@@ -12,7 +12,7 @@ EFFECT = Effect(
     source=ARMSTRONG,
     elsewhere=Elsewhere(modelica={"damping": "{coefficient}"}, quantities={"viscous_damping": "coefficient"}),
     shows_in="fast travel, both directions",
-    record="full-duty travel in both directions, and the motor resistance measured",
+    record="full-duty travel in both directions, with the motor resistance measured and held",
     parameters=(
         Parameter(
             "coefficient",

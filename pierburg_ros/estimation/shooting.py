@@ -33,9 +33,10 @@ is known to a fraction of the noise."""
 MOVES = 2
 """Steps by which a beginning is moved. Work: one more simulation each; the second gains where the first was far.
 Not varied."""
-TRUST = 5.0
-"""Standard deviations of what the samples say by which a beginning may be moved. Chosen: chance never asks for more; a
-model that lacks physics would, and shall not explain itself so. Not varied."""
+TRUST = 3.0
+"""Standard deviations of what the samples say by which a beginning may be moved freely; more costs as a residual does.
+Measured: held within 5 or 30 of them, identified AK80 and ODrive runs keep up to 1.4 to 3.2 times the error (n = 5),
+for the steps of a real encoder are no white noise."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +74,7 @@ class Shooting:
         slopes = shot(angle_error, 0.0) - best, shot(0.0, velocity_error) - best
         error, lengths = self._sums(np.square(measured - best)), np.diff(np.append(self.first, time.size))
         for _ in range(MOVES):
-            step = self._move(measured - best, *slopes, noise_of(time, measured))
-            further = np.clip(move + step, -TRUST, TRUST)
+            further = move + self._move(measured - best, *slopes, noise_of(time, measured))
             moved = shot(further[0] * angle_error, further[1] * velocity_error)
             reached = self._sums(np.square(measured - moved))
             better = reached < error

@@ -168,8 +168,8 @@ def bristles(contents: Contents, gear: float, step: float) -> str:
     sliding = contents.base("coulomb_friction")
     stiffness, damping = contents.quantity("bristle_stiffness"), contents.quantity("bristle_damping")
     if stiffness == 0.0:
-        damping = contents.base("total_inertia") / (RESOLVED * step)
-        stiffness = (total_damping(contents) + damping) / (RESOLVED * step)
+        taken_up = total_damping(contents) + contents.base("total_inertia") / (RESOLVED * step)
+        stiffness = taken_up / (RESOLVED * step)
         given = sliding / stiffness
         contents.notes.append(f"Friction is rigid in the model, here it gives {given:.2g} rad before it slides.")
     static = max(contents.quantity("breakaway_friction"), sliding)

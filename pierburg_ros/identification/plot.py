@@ -9,12 +9,12 @@ import numpy as np
 import plotly.graph_objects as go
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from plotly.subplots import make_subplots
 
-from pierburg_ros.actuators.wording import quantity_title
-from pierburg_ros.comparison.plot import COLOURS
+from pierburg_ros.actuators.wording import input_title, quantity_title
+from pierburg_ros.comparison.plot import drawn_input
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
+from pierburg_ros.pages.over_time import Curve, Panel, finished, over_time
 from pierburg_ros.recording import Recording
 
 BRANCHES = ((1, "opening", "#d62728"), (-1, "closing", "#1f77b4"))
@@ -28,9 +28,9 @@ def branch(static: StaticCharacteristic, direction: int, upper_stop: float) -> t
     return 100.0 * duty, np.degrees(np.clip([static.angle(d, direction) for d in duty], 0.0, upper_stop))
 
 
-def draw_static(figure: Figure, static: StaticCharacteristic, upper_stop: float, title: str) -> None:
-    """Draw the settled angles and both branches into `figure`, like the paper's Fig. 3."""
-    axes = figure.subplots()
+def draw_static(drawn: Figure, static: StaticCharacteristic, upper_stop: float, title: str) -> None:
+    """Draw the settled angles and both branches into `drawn`, like the paper's Fig. 3."""
+    axes = drawn.subplots()
     for direction, name, colour in BRANCHES:
         points = [point for point in static.points if point.direction == direction]
         axes.plot(*branch(static, direction, upper_stop), color=colour, label=f"{name}, fitted")
@@ -59,60 +59,73 @@ def draw_static(figure: Figure, static: StaticCharacteristic, upper_stop: float,
 
 def static_picture(static: StaticCharacteristic, upper_stop: float) -> Figure:
     """The static characteristic as a Matplotlib figure."""
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
-    FigureCanvasAgg(figure)
+    drawn = Figure(figsize=(7.0, 4.5), layout="constrained")
+    FigureCanvasAgg(drawn)
     title = (
         f"$D_c$ = {100 * static.coulomb_duty.value:.3f} %, $D_{{pre}}$ ="
         f" {100 * static.preload_duty.value:.3f} %, scatter {np.degrees(static.scatter):.2g} degrees"
     )
-    draw_static(figure, static, upper_stop, title)
-    return figure
+    draw_static(drawn, static, upper_stop, title)
+    return drawn
 
 
-def page(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
-    """Measured and simulated, residual, static characteristic and correlations, as a Plotly figure."""
-    figure = make_subplots(
-        rows=3,
-        cols=2,
-        specs=[[{"colspan": 2}, None], [{"colspan": 2}, None], [{}, {}]],
-        row_heights=[0.4, 0.2, 0.4],
-        subplot_titles=("measured and simulated", "residual", "settled angles", "correlation"),
-        vertical_spacing=0.08,
-    )
-    start = 0.0
-    for recording, residual in zip(recordings, found.fitted.residuals, strict=True):
-        time = start + recording.time - recording.time[0]
-        for name, values, row in (
-            ("measured", recording.measured, 1),
-            ("simulated", recording.measured - residual, 1),
-            ("residual", residual, 2),
-        ):
-            line = {"color": COLOURS[name], "width": 1.2}
-            trace = go.Scattergl(x=time, y=values, name=name, line=line, showlegend=start == 0.0)
-            figure.add_trace(trace, row=row, col=1)
-        start += recording.duration
-    _add_static(figure, found)
-    names = list(found.fitted.names)
+def offsets(recordings: Sequence[Recording]) -> list[float]:
+    """Where each recording begins in a plot that shows them one after another [s]."""
+    ends = np.cumsum([recording.duration for recording in recordings])
+    return [0.0, *(float(end) for end in ends[:-1])]
+
+
+def signals_of(found: Identification, recordings: Sequence[Recording]) -> dict[str, np.ndarray]:
+    """Time of all recordings one after another [s], measured and residual in the measured unit, and input."""
+    starts = offsets(recordings)
+    return {
+        "time": np.concatenate([r.time - r.time[0] + start for r, start in zip(recordings, starts, strict=True)]),
+        "measured": np.concatenate([recording.measured for recording in recordings]),
+        "residual": np.concatenate(found.fitted.residuals),
+        "command": np.concatenate([drawn_input(recording) for recording in recordings]),
+    }
+
+
+def figure(found: Identification, recordings: Sequence[Recording]) -> go.Figure:
+    """Measured and simulated, residual, and input over the time of all recordings one after another."""
+    signals, unit = signals_of(found, recordings), found.model.actuator.shown(recordings[0].unit)
+    measured, residual, command = ((f"0/{name}", signals[name]) for name in ("measured", "residual", "command"))
+    answers = [
+        Curve("measured", "measured", "measured", measured),
+        Curve("simulated", "simulated", "simulated", measured, residual),
+    ]
+    left = [Curve("residual", "residual", "residual", residual)]
+    panels = [
+        Panel("measured and simulated", quantity_title(recordings[0].quantity, unit), answers, 0.45),
+        Panel("residual; grey: noise", f"residual [{unit}]", left, 0.33, 1.96 * found.noise),
+        Panel(
+            "input",
+            input_title(recordings[0].input, found.model.actuator.motion),
+            [Curve("input", "input", "input", command, steps=True)],
+            0.22,
+        ),
+    ]
+    drawn = over_time(("0/time", signals["time"]), panels)
+    return drawn.update_layout(title=f"Identification of {escape(found.model.actuator.name)}", height=800)
+
+
+def correlation_figure(found: Identification) -> go.Figure:
+    """Correlations of the fitted parameters."""
+    names = [name.replace("_", " ") for name in found.fitted.names]
     heat = go.Heatmap(z=found.fitted.correlation, x=names, y=names, zmin=-1, zmax=1, texttemplate="%{z:.2f}")
-    heat.colorscale = "RdBu"
-    figure.add_trace(heat, row=3, col=2)
-    figure.update_yaxes(title_text=_title(found, recordings[0]), row=1)
-    figure.update_xaxes(title_text="time [s], recordings one after another", row=2)
-    title = f"Identification of {escape(found.model.actuator.name)}"
-    return figure.update_layout(template="plotly_white", height=1000, title=title)
+    heat.colorscale, heat.showscale = "RdBu", False
+    drawn = go.Figure(heat)
+    drawn.update_yaxes(autorange="reversed")
+    return finished(drawn, 420)
 
 
-def _title(found: Identification, recording: Recording) -> str:
-    return quantity_title(recording.quantity, found.model.actuator.shown(recording.unit))
-
-
-def _add_static(figure: go.Figure, found: Identification) -> None:
-    if found.static is None:
-        return
+def static_figure(static: StaticCharacteristic, upper_stop: float) -> go.Figure:
+    """The settled angles and both branches, like the paper's Fig. 3."""
+    drawn = go.Figure()
     for direction, name, colour in BRANCHES:
-        duty, angle = branch(found.static, direction, found.model.actuator.upper_stop)
-        points = [point for point in found.static.points if point.direction == direction]
-        figure.add_trace(go.Scatter(x=duty, y=angle, name=name, line={"color": colour}), row=3, col=1)
+        duty, angle = branch(static, direction, upper_stop)
+        points = [point for point in static.points if point.direction == direction]
+        drawn.add_trace(go.Scatter(x=duty, y=angle, name=f"{name}, fitted", line={"color": colour}, mode="lines"))
         marks = go.Scatter(
             x=[100.0 * point.duty for point in points],
             y=[np.degrees(point.angle) for point in points],
@@ -120,6 +133,6 @@ def _add_static(figure: go.Figure, found: Identification) -> None:
             mode="markers",
             marker={"color": colour},
         )
-        figure.add_trace(marks, row=3, col=1)
-    figure.update_xaxes(title_text="duty [%]", row=3, col=1)
-    figure.update_yaxes(title_text="angle [degrees]", row=3, col=1)
+        drawn.add_trace(marks)
+    drawn.update_xaxes(title_text="duty [%]").update_yaxes(title_text="settled angle [degrees]")
+    return finished(drawn, 380)

@@ -71,9 +71,9 @@ class Comparison(Result):
 
     def figure(self) -> go.Figure:
         """Measured and simulated, residual, and input over time, as a Plotly figure."""
-        from pierburg_ros.comparison.plot import page
+        from pierburg_ros.comparison.plot import figure
 
-        return page(self.found)
+        return figure(self.found)
 
     def picture(self) -> Figure:
         """The same as a Matplotlib figure."""
@@ -113,6 +113,9 @@ class Comparison(Result):
 
     def write_into(self, folder: Path) -> None:
         """Write replay.json, .csv, .mcap, .html and .png."""
+        from pierburg_ros.comparison.page import replay_page
+        from pierburg_ros.library.origin import origin
+
         (folder / "replay.json").write_text(self.to_json(), encoding="utf-8")
         columns = self.columns()
         table, header = np.column_stack(list(columns.values())), ",".join(columns)
@@ -122,7 +125,8 @@ class Comparison(Result):
             "/residual": (FLOAT64, self.recording.time, self.residual),
         }
         write_recording(folder / "replay.mcap", {**topics_of(self.recording), **simulated})
-        self.figure().write_html(folder / "replay.html", include_plotlyjs=True)
+        page = replay_page(self.found, self.rows(), *origin(self.model.actuator, [self.recording]))
+        (folder / "replay.html").write_text(page, encoding="utf-8")
         self.picture().savefig(folder / "replay.png", dpi=120)
 
 

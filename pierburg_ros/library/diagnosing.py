@@ -15,6 +15,7 @@ from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_mo
 from pierburg_ros.library.reading import Readable, recordings_of
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
+from pierburg_ros.recording import Recording
 
 if TYPE_CHECKING:
     import pandas
@@ -31,6 +32,7 @@ class Diagnosis(Result):
     """The verdict on recordings; `document` has every field of diagnosis.json, `found` the signals as well."""
 
     found: Found
+    recordings: tuple[Recording, ...] = ()
 
     @property
     def document(self) -> Document:
@@ -71,7 +73,7 @@ class Diagnosis(Result):
 
     def picture(self) -> Figure:
         """The same as a Matplotlib figure."""
-        from pierburg_ros.diagnosis.report.page import picture
+        from pierburg_ros.diagnosis.report.picture import picture
 
         return picture(self.found)
 
@@ -107,10 +109,11 @@ class Diagnosis(Result):
     def write_into(self, folder: Path) -> None:
         """Write diagnosis.json, model.yaml, report.html and overview.png."""
         from pierburg_ros.diagnosis.report.page import write_page
+        from pierburg_ros.library.origin import origin
 
         self.document.write(folder / "diagnosis.json")
         self.model.write(folder / "model.yaml")
-        write_page(folder / "report.html", self.found)
+        write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings))
         self.picture().savefig(folder / "overview.png", dpi=110)
 
 
@@ -143,4 +146,5 @@ def diagnose(
     measured = recordings_of(recordings, nominal.actuator)
     simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
     tell = progress or (lambda _: None)
-    return Diagnosis(diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force))
+    found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
+    return Diagnosis(found, (*measured, *simulated))

@@ -51,10 +51,10 @@ class Identification(Result):
         return json.dumps(self.found.as_mapping(), indent=1, allow_nan=False) + "\n"
 
     def figure(self) -> go.Figure:
-        """Fit and residual over time, settled angles and correlations, as a Plotly figure."""
-        from pierburg_ros.identification.plot import page
+        """Fit, residual and input over the time of all recordings, as a Plotly figure."""
+        from pierburg_ros.identification.plot import figure
 
-        return page(self.found, self.recordings)
+        return figure(self.found, self.recordings)
 
     def picture(self) -> Figure:
         """The fit of the first recording as a Matplotlib figure."""
@@ -91,11 +91,14 @@ class Identification(Result):
 
     def write_into(self, folder: Path) -> None:
         """Write identification.json, model.yaml, identification.html, fit.png and static_characteristic.png."""
+        from pierburg_ros.identification.page import identification_page
         from pierburg_ros.identification.plot import static_picture
+        from pierburg_ros.library.origin import origin
 
         (folder / "identification.json").write_text(self.to_json(), encoding="utf-8")
         self.model.write(folder / "model.yaml")
-        self.figure().write_html(folder / "identification.html", include_plotlyjs=True)
+        page = identification_page(self.found, self.recordings, *origin(self.model.actuator, self.recordings))
+        (folder / "identification.html").write_text(page, encoding="utf-8")
         self.picture().savefig(folder / "fit.png", dpi=120)
         if self.found.static is not None:
             drawn = static_picture(self.found.static, self.found.model.actuator.upper_stop)

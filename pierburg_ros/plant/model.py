@@ -91,10 +91,13 @@ class Model:
             }
         return content
 
+    def text(self) -> str:
+        """The model file (section 6 of docs/contract.md)."""
+        return yaml.safe_dump(_plain(self.as_mapping()), sort_keys=False, default_flow_style=None)
+
     def write(self, path: str | Path) -> None:
-        """Write the model file (section 6 of docs/contract.md)."""
-        text = yaml.safe_dump(_plain(self.as_mapping()), sort_keys=False, default_flow_style=None)
-        Path(path).write_text(text, encoding="utf-8")
+        """Write the model file."""
+        Path(path).write_text(self.text(), encoding="utf-8")
 
 
 def _plain(value: Any) -> Any:

@@ -6,6 +6,7 @@ Parameters, logs, diagnostics, metadata and attachments are never looked at.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,7 +63,7 @@ def read_recording(
         else:
             made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen, preferred)
         check_bounds(made)
-    return made
+    return replace(made, path=path)
 
 
 def wanted(chosen: SignalMap) -> Wanted:
@@ -121,6 +122,7 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         time_source=", ".join(sources),
         losses=losses,
         input=driven,
+        path=None,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +52,8 @@ class Recording:
     duty [1], current [A] or torque [N.m]; supply voltage [V], temperature [degC], bridge enabled [0 or 1] and
     setpoints [rad]. What was recorded before the first sample has a negative time. Of a linear actuator all of them
     are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
-    time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing.
+    time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing,
+    `path` where it was read from.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Recording:
     time_source: str = "stamp"
     losses: tuple[Loss, ...] = ()
     input: str = "duty"
+    path: Path | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))

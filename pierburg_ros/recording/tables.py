@@ -95,6 +95,7 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
         time_source="column",
         losses=tuple(loss for loss in losses if loss.spans),
         input=driven,
+        path=None,
         **acting,
     )
 

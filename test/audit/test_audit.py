@@ -10,6 +10,7 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.audit import audit
+from pierburg_ros.identification.description.told import bench
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
@@ -90,3 +91,33 @@ def test_what_it_says_mends_the_signal():
     (fault,) = audit([replace(one, measured=1000.0 * one.measured)], VALVE)
     assert (fault.signal, fault.mend) == ("hall_voltage", "`hall_voltage: {scale: 0.001}`")
     assert str(fault).startswith("simulated: hall_voltage: millivolts read as volts. It reads ")
+
+
+def test_a_model_with_effects_is_held_against_recordings_too():
+    """Numbers that must keep an order, such as breakaway torque above sliding friction, stay in it while they drift."""
+    worn = {"static_friction.breakaway_torque": 0.21, "static_friction.stribeck_velocity": 0.1}
+    one = recorded(coulomb_friction=0.3)
+    assert audit([one], VALVE.with_values(worn)) == []
+    (fault,) = audit([replace(one, command=Channel(one.command.time, -one.command.values))], VALVE.with_values(worn))
+    assert (fault.signal, fault.mend) == ("duty", "`duty: {sign: -1}`")
+
+
+def test_a_supply_beside_a_torque_says_nothing():
+    arm = Model.nominal(read_actuator("ak80"))
+    one = bench(arm)
+    assert audit([replace(one, supply_voltage=Channel(one.time[:1], np.array([24.0])))], arm) == []
+    (fault,) = audit([replace(one, measured=np.rad2deg(one.measured))], arm)
+    assert fault.mend == "`position: {unit: deg}`"
+
+
+def test_recordings_of_two_valves_are_told_apart():
+    assert audit([recorded(1), recorded(2)], VALVE) == []
+    (fault,) = audit([recorded(1), recorded(2, torque_constant=0.012)], VALVE)
+    assert fault.signal == "recording" and "They differ most in" in fault.evidence
+
+
+@pytest.mark.parametrize("samples", [2, 30, 90])
+def test_recordings_that_are_too_short_are_left_to_others(samples):
+    one = recorded()
+    short = replace(one, time=one.time[:samples], measured=one.measured[:samples], setpoints=None)
+    assert audit([short], VALVE) == []

@@ -20,7 +20,7 @@ def steps(duration: float, seed: int = 3, duties: tuple[float, float] = (-0.1, 0
 
 
 def mujoco_angle(model: Model, inputs: Inputs, samples: np.ndarray) -> np.ndarray:
-    """Angle [rad] at evenly spaced `samples` of the exported model in MuJoCo, shape (samples,)."""
+    """Angle [rad] at evenly spaced `samples` of the exported model in MuJoCo, shape (samples,); or speed [rad/s]."""
     import mujoco
 
     compiled = mujoco.MjModel.from_xml_string(export(model, "mujoco").text)
@@ -28,10 +28,11 @@ def mujoco_angle(model: Model, inputs: Inputs, samples: np.ndarray) -> np.ndarra
     count = round((samples[1] - samples[0]) / compiled.opt.timestep)
     assert count * compiled.opt.timestep == np.float64(samples[1] - samples[0]).round(9)
     place = np.maximum(np.searchsorted(inputs.time, samples + 1e-9, side="right") - 1, 0)
-    volts = inputs.command[place] * model.values["supply_voltage"]
+    scale = model.values["supply_voltage"] if model.actuator.drive == "voltage" else 1.0
+    shown = data.qvel if model.actuator.quantity == "speed" else data.qpos
     angles = np.empty(samples.size)
-    for index, voltage in enumerate(volts):
-        angles[index], data.ctrl[0] = data.qpos[0], voltage
+    for index, command in enumerate(inputs.command[place]):
+        angles[index], data.ctrl[0] = shown[0], scale * command
         mujoco.mj_step(compiled, data, count)
     return angles
 

@@ -15,6 +15,9 @@ SHORTEST = 2.6
 MOST_BINS = 600
 """Steps into which a recording is cut at most; they are half the shortest window, or longer. Work: time and memory grow
 with its square."""
+GRAIN = 1e-7
+"""Share of the energy that differences between windows are told in. Derived: a shaft that stands displaced makes
+windows that hold the same but for rounding, 1e-12, which shall not choose among them."""
 ENOUGH = 0.9
 """Share of an energy that shorter windows, or fewer, must keep of what longer or more ones hold. Chosen: a tenth is
 not worth a longer window; not varied."""
@@ -36,7 +39,8 @@ def windows(
     width = duration / count
     least = max(1, math.ceil(shortest / width - 1e-9))
     place = np.minimum(((time - time[0]) / width).astype(int), count - 1)
-    binned = np.asarray(np.bincount(place, weights=energy, minlength=count), dtype=float)
+    held = np.bincount(place, weights=energy, minlength=count)
+    binned = np.round(held / (GRAIN * float(held.sum())))
     longest = int(quarter * count + 1e-9)
     if longest < least:
         return []

@@ -1,71 +1,95 @@
-"""The plots of the report, to be zoomed: signals and errors over time, and what is left as torque."""
+"""The plots of the report: signals and errors over time and over the state, laws, what is left as torque."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from pierburg_ros.actuators.units import Motion, unit_of
-from pierburg_ros.actuators.wording import input_title, quantity_title
+from pierburg_ros.actuators.wording import input_title, quantity_title, travel_factor, travel_title
 from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.report.allowed import Bar
+from pierburg_ros.diagnosis.report.places import Place
+from pierburg_ros.diagnosis.report.tried import title
+from pierburg_ros.diagnosis.result import Characteristic, Tried, View
 from pierburg_ros.diagnosis.schema import Diagnosis, ResidualTorque
+from pierburg_ros.pages.over_time import COLOURS, OTHERS, Curve, Panel, Span, finished, over_time
 
-BUCKETS = 1500
-"""Stretches of time of which a curve shows the lowest and the highest sample. Derived: as many as a wide screen has
-pixels for the plot."""
-COLOURS = {"measured": "#1f2933", "nominal": "#c2413b", "recalibrated": "#e08e2b", "final": "#2563a8"}
-INPUT = "#4b8b57"
-WINDOW = "#f5c542"
 MEANINGS = {
     "measured": "measured",
     "nominal": "model as described",
     "recalibrated": "parameters re-estimated",
     "final": "diagnosed model",
 }
+MODELS = ("nominal", "recalibrated", "final")
+LAGS = 1.0
+"""Longest lag [s] of an autocorrelation. Chosen: about the time in which the valve forgets."""
+SCATTERED = 1500
+"""Points of an error over angle or velocity. Work: more lie on top of each other."""
+NUMBERED = 6
+"""Windows that are numbered in a plot. Chosen: more would overlap."""
 
 
-def thinned(time: Signal, values: Signal) -> tuple[Signal, Signal]:
-    """Time and `values` with the lowest and the highest sample of each stretch kept, so that no peak is lost."""
-    if time.size <= 2 * BUCKETS:
-        return time, values
-    first = np.linspace(0, time.size, BUCKETS, endpoint=False).astype(int)
-    parts = np.split(values, first[1:])
-    lowest = first + [int(np.argmin(part)) for part in parts]
-    highest = first + [int(np.argmax(part)) for part in parts]
-    kept = np.unique(np.concatenate([[0], lowest, highest, [time.size - 1]]))
-    return time[kept], values[kept]
+def time_figure(
+    diagnosis: Diagnosis, view: View, tried: Sequence[Tried], places: Sequence[Place], prefix: str
+) -> go.Figure:
+    """A recording over time: signals, error re-estimated, error of the diagnosed model, input.
+
+    `tried` are switched on and off with their names; the keys of the signals begin with `prefix`.
+    """
+    measured = f"{prefix}/measured", view.measured
+
+    def error(key: str) -> tuple[str, Signal]:
+        return f"{prefix}/{key}", view.errors[key]
+
+    def curves(key: str, name: str, colour: str, shown: bool) -> tuple[Curve, Curve]:
+        return (
+            Curve(name, key, colour, measured, error(key), shown),
+            Curve(name, key, colour, error(key), shown=shown),
+        )
+
+    own = {key: curves(key, MEANINGS[key], key, key != "nominal") for key in MODELS if key in view.errors}
+    rivals = [row for row in tried if row.key in view.errors and row.key != "final"]
+    others = [curves(row.key, title(row), f"other-{place % OTHERS}", False) for place, row in enumerate(rivals)]
+    unit, noise = diagnosis.unit, diagnosis.fit.noise_floor
+    signals = [Curve("measured", "measured", "measured", measured), *(pair[0] for pair in (*own.values(), *others))]
+    before = [*(own[key][1] for key in MODELS[:2] if key in own), *(pair[1] for pair in others)]
+    band = None if noise is None else 1.96 * noise
+    panels = [
+        Panel("measured and simulated", quantity_title(diagnosis.quantity, unit), signals, 0.34),
+        Panel("error of what is switched on", f"error [{unit}]", before, 0.24, band),
+        Panel(
+            "error of the diagnosed model; grey: noise",
+            f"error [{unit}]",
+            [own[key][1] for key in MODELS[2:] if key in own],
+            0.24,
+            band,
+        ),
+        Panel(
+            "input",
+            driving_title(diagnosis),
+            [Curve("input", "input", "input", (f"{prefix}/command", view.command), steps=True)],
+            0.18,
+        ),
+    ]
+    spans = [
+        Span(place.start, place.end, str(rank) if rank <= NUMBERED else "")
+        for rank, place in enumerate(places, start=1)
+    ]
+    spans += [Span(start, end, missing=True) for start, end, _ in view.left_out]
+    return over_time((f"{prefix}/time", view.time), [panel for panel in panels if panel.curves], spans)
 
 
 def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Figure:
     """Signals, errors and input of the first recording over time, the located windows shaded and numbered."""
-    titles = (
-        "measured and simulated",
-        "error before: measured less simulated",
-        "error after, with the band that noise fills 95 % of the time",
-        diagnosis.input,
-    )
-    heights = [0.34, 0.24, 0.24, 0.18]
-    plot = make_subplots(
-        rows=4, cols=1, shared_xaxes=True, vertical_spacing=0.055, row_heights=heights, subplot_titles=titles
-    )
-    for name in COLOURS:
-        _curve(plot, 1, MEANINGS[name], signals["time"], signals[name], COLOURS[name], name)
-        if name != "measured":
-            error = signals["measured"] - signals[name]
-            row = 3 if name == "final" else 2
-            _curve(plot, row, MEANINGS[name], signals["time"], error, COLOURS[name], name, legend=False)
-    _curve(plot, 4, diagnosis.input, signals["time"], signals["command"], INPUT, "input", legend=False)
-    _shade(plot, diagnosis)
-    errors = [f"error [{diagnosis.unit}]"] * 2
-    axes = (quantity_title(diagnosis.quantity, diagnosis.unit), *errors, driving_title(diagnosis))
-    for row, title in enumerate(axes, start=1):
-        plot.update_yaxes(title_text=title, row=row, col=1)
-    plot.update_xaxes(title_text="time [s]", row=4, col=1)
-    return _styled(plot, 900).update_layout(hovermode="x")
+    errors = {key: signals["measured"] - signals[key] for key in ("nominal", "recalibrated", "final")}
+    nothing = np.zeros(0)
+    view = View("", signals["time"], signals["measured"], signals["command"], nothing, nothing, errors)
+    places = [Place(each.start, each.end, each.share, each.regime) for each in diagnosis.locations]
+    return time_figure(diagnosis, view, (), places, "0")
 
 
 def driving_title(diagnosis: Diagnosis) -> str:
@@ -73,38 +97,94 @@ def driving_title(diagnosis: Diagnosis) -> str:
     return "duty" if diagnosis.input == "duty" else input_title(diagnosis.input, diagnosis.motion)
 
 
-def _curve(
-    plot: go.Figure, row: int, name: str, time: Signal, values: Signal, colour: str, group: str, legend: bool = True
-) -> None:
-    x, y = thinned(time, values)
-    line = {"color": colour, "width": 1.3, "shape": "hv" if group == "input" else "linear"}
-    few = np.round(x, 3).astype(np.float32), y.astype(np.float32)
-    trace = go.Scatter(x=few[0], y=few[1], name=name, line=line, legendgroup=group, showlegend=legend)
-    plot.add_trace(trace, row, 1)
+def autocorrelation_figure(views: Sequence[View]) -> go.Figure:
+    """Autocorrelation of both errors over the lag, over all recordings, with what white noise stays within."""
+    plot = go.Figure()
+    for key in ("recalibrated", "final"):
+        lag, correlation, samples = autocorrelation(views, key)
+        plot.add_trace(_line(lag, correlation, MEANINGS[key], key))
+    bound = 1.96 / math.sqrt(max(samples, 1))
+    plot.add_hrect(y0=-bound, y1=bound, fillcolor=COLOURS["measured"], opacity=0.2, line_width=0)
+    plot.update_xaxes(title_text="lag [s]").update_yaxes(title_text="autocorrelation", range=[-1.05, 1.05])
+    return finished(plot, 320)
 
 
-def _shade(plot: go.Figure, diagnosis: Diagnosis) -> None:
-    """Located windows in every row, the first ranks on top, and the noise in the row of the final error."""
-    for rank, place in enumerate(diagnosis.locations, start=1):
-        plot.add_vrect(
-            x0=place.start, x1=place.end, row="all", col=1, fillcolor=WINDOW, opacity=0.28, line_width=0, layer="below"
-        )
-        if rank <= 6:  # more would overlap
-            where = {"x": (place.start + place.end) / 2, "y": 1.0, "yref": "y domain", "yanchor": "top"}
-            plot.add_annotation(**where, text=str(rank), showarrow=False, row=1, col=1)
-    if diagnosis.fit.noise_floor is not None:
-        band = 1.96 * diagnosis.fit.noise_floor
-        plot.add_hrect(y0=-band, y1=band, row=3, col=1, fillcolor="#9aa5b1", opacity=0.35, line_width=0, layer="below")
+def autocorrelation(views: Sequence[View], key: str) -> tuple[Signal, Signal, int]:
+    """Lag [s], autocorrelation of an error by name, and the samples that it comes from."""
+    interval = float(np.median(np.diff(views[0].time)))
+    count = min(max(int(LAGS / interval), 2), *(view.time.size // 2 for view in views))
+    total = np.zeros(count)
+    for view in views:
+        error = view.errors[key] - np.mean(view.errors[key])
+        spectrum = np.abs(np.fft.rfft(error, 2 * error.size)) ** 2
+        total += np.fft.irfft(spectrum)[:count]
+    shown = np.unique(np.round(np.linspace(0, count - 1, 200)).astype(int))
+    correlation = total / total[0] if total[0] > 0.0 else total
+    return interval * shown, correlation[shown], sum(view.time.size for view in views)
+
+
+def state_figure(views: Sequence[View], over: str, unit: str, motion: Motion) -> go.Figure:
+    """Both errors over the `angle` or the `velocity` of all recordings."""
+    plot = go.Figure()
+    factor = travel_factor(motion) if over == "angle" else 1.0
+    title = travel_title(motion) if over == "angle" else f"velocity [{unit_of('rad/s', motion)}]"
+    state = np.concatenate([getattr(view, over) for view in views])
+    for key in ("recalibrated", "final"):
+        error = np.concatenate([view.errors[key] for view in views])
+        kept = slice(None, None, max(1, state.size // SCATTERED))
+        plot.add_trace(_points(factor * state[kept], error[kept], MEANINGS[key], key))
+    plot.update_xaxes(title_text=title).update_yaxes(title_text=f"error [{unit}]")
+    return finished(plot, 320)
+
+
+def law_figure(law: Characteristic) -> go.Figure:
+    """A law of each model, with what the recordings say around the final one."""
+    plot = go.Figure()
+    if law.points is not None:
+        plot.add_trace(_points(*law.points, "recording, by the diagnosed model", "measured", 0.35))
+    for key, (x, y) in law.curves.items():
+        plot.add_trace(_line(x, y, MEANINGS[key], key, {"nominal": "dot", "recalibrated": "dash"}.get(key, "solid")))
+    plot.update_xaxes(title_text=law.x).update_yaxes(title_text=law.y)
+    return finished(plot, 340)
+
+
+def bars_figure(bars: Sequence[Bar]) -> go.Figure:
+    """How much of each effect the recordings still allow, beside its typical size."""
+    drawn = go.Bar(
+        x=[bar.share for bar in bars],
+        y=[bar.name for bar in bars],
+        text=[bar.text for bar in bars],
+        orientation="h",
+        marker={"color": COLOURS["final"]},
+        meta={"colour": "final"},
+    )
+    plot = go.Figure(drawn)
+    plot.update_xaxes(title_text="what 95 % still allow, of the typical size", type="log")
+    plot.add_vline(x=1.0, line_dash="dot", line_color=COLOURS["nominal"])
+    plot.update_yaxes(autorange="reversed")
+    return finished(plot, bars_height(bars))
+
+
+def bars_height(bars: Sequence[Bar]) -> int:
+    """Height of the plot of the bars [px]."""
+    return 90 + 26 * len(bars)
+
+
+def horizons_figure(horizons: Mapping[str, Sequence[float | None]], names: Sequence[str], unit: str) -> go.Figure:
+    """Error after each time of prediction from the measured state, for the three models."""
+    plot = go.Figure()
+    for key, errors in horizons.items():
+        plot.add_trace(_line(list(names), list(errors), MEANINGS[key], key).update(mode="lines+markers"))
+    plot.update_xaxes(title_text="predicted from the measured state for", type="category")
+    plot.update_yaxes(title_text=f"error (RMSE) [{unit}]", type="log")
+    return finished(plot, 320)
 
 
 def torque_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Figure:
-    """The residual torque over angle and velocity, and the missing torque over time beside it."""
-    torque, velocity = unit_of("N.m", motion), unit_of("rad/s", motion)
-    plot = make_subplots(rows=1, cols=2, column_widths=[0.58, 0.42], horizontal_spacing=0.16)
+    """The residual torque over angle and velocity."""
     largest = float(np.max(np.abs(residual.torque)))
-    angles = [math.degrees(angle) if motion == "rotary" else angle for angle in residual.angle]
     surface = go.Contour(
-        x=angles,
+        x=[travel_factor(motion) * angle for angle in residual.angle],
         y=residual.velocity,
         z=np.transpose(residual.torque),
         colorscale="RdBu_r",
@@ -112,33 +192,29 @@ def torque_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Fig
         zmax=largest,
         contours_coloring="heatmap",
         line_width=0.5,
-        colorbar={"title": torque, "x": 0.5, "thickness": 12},
+        colorbar={"title": {"text": unit_of("N.m", motion)}, "thickness": 12},
     )
-    plot.add_trace(surface, 1, 1)
-    plot.update_xaxes(title_text="angle [degrees]" if motion == "rotary" else "position [m]", row=1, col=1)
-    plot.update_yaxes(title_text=f"velocity [{velocity}]", row=1, col=1)
-    if residual.over_time is not None:
-        line = {"color": COLOURS["final"], "width": 1.5}
-        trend = go.Scatter(
-            x=residual.over_time.time, y=residual.over_time.torque, mode="lines+markers", line=line, showlegend=False
-        )
-        plot.add_trace(trend, 1, 2)
-        plot.update_xaxes(title_text="time [s]", row=1, col=2)
-        plot.update_yaxes(
-            title_text=f"mean missing torque [{torque}]" if motion == "rotary" else f"mean missing force [{torque}]",
-            row=1,
-            col=2,
-        )
-    return _styled(plot, 400)
+    plot = go.Figure(surface)
+    plot.update_xaxes(title_text=travel_title(motion))
+    plot.update_yaxes(title_text=f"velocity [{unit_of('rad/s', motion)}]")
+    return finished(plot, 360)
 
 
-def _styled(plot: go.Figure, height: int) -> go.Figure:
-    plot.update_annotations(font_size=12)
-    plot.update_layout(
-        height=height,
-        template="plotly_white",
-        margin={"t": 60, "l": 70, "r": 20, "b": 50},
-        font={"family": "system-ui, sans-serif", "size": 12},
-        legend={"orientation": "h", "y": 1.06, "yanchor": "bottom", "x": 0},
-    )
-    return plot
+def trend_figure(residual: ResidualTorque, motion: Motion = "rotary") -> go.Figure:
+    """The missing torque over time."""
+    over = residual.over_time
+    assert over is not None
+    plot = go.Figure(_line(over.time, over.torque, "missing torque", "final").update(mode="lines+markers"))
+    plot.update_xaxes(title_text="time [s]").update_yaxes(title_text=f"mean missing load [{unit_of('N.m', motion)}]")
+    return finished(plot, 360)
+
+
+def _line(x: object, y: object, name: str, key: str, dash: str = "solid") -> go.Scatter:
+    line = {"color": COLOURS[key], "width": 2, "dash": dash}
+    return go.Scatter(x=x, y=y, name=name, mode="lines", line=line, meta={"colour": key})
+
+
+def _points(x: Signal, y: Signal, name: str, key: str, opacity: float = 0.5) -> go.Scatter:
+    marker = {"color": COLOURS[key], "size": 3, "opacity": opacity}
+    few = x.astype(np.float32), y.astype(np.float32)
+    return go.Scatter(x=few[0], y=few[1], name=name, mode="markers", marker=marker, meta={"colour": key})

@@ -18,6 +18,7 @@ from pierburg_ros.diagnosis.remainder.resemblance import resemblance
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.report.horizons import horizons
+from pierburg_ros.diagnosis.report.tried import distinct, identifier, statuses
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -40,7 +41,7 @@ from pierburg_ros.diagnosis.schema import (
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import largest_mark
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain, tied
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
 from pierburg_ros.effects import EFFECT, EFFECTS
@@ -86,7 +87,7 @@ def document(
         cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise),
-        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short),
+        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
     )
 
 
@@ -194,26 +195,18 @@ def rmse(data: Data, samples: Flags, model: Model, switch: Switch | None = None)
 
 
 def candidates(found: Found, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
-    """The explanations tried, the best first: error on unseen samples, evidence, status."""
+    """The explanations tried, each name once, the best first: error on unseen samples, evidence, status."""
     data, chosen = found.data, conclusion.chosen
-    fits = {**found.fits, chosen.explanation: chosen} if data.step else found.fits
-    equals = {id(fit) for fit in tied(chosen, found.of_size(chosen.explanation.size), found.estimator)}
-    ranked = sorted(fits.values(), key=lambda fit: (fit is not chosen, fit.chi2))
+    status = statuses(found, chosen)
     return [
         Candidate(
             id=identifier(fit),
             validation_rmse=rmse(data, data.test, fit.model, fit.switch),
             evidence=gain(conclusion.recalibrated, fit),
-            status="chosen" if fit is chosen else "tied" if id(fit) in equals else "rejected",
+            status=status[identifier(fit)],
         )
-        for fit in ranked[:most]
+        for fit in distinct(found, chosen)[:most]
     ]
-
-
-def identifier(fit: Fit) -> str:
-    """Effect ids and parameter names joined by +; `nominal` for none."""
-    change = (f"{fit.explanation.changed}{WHEN}",) if fit.explanation.changed else ()
-    return "+".join((*fit.explanation.drifted, *change, *fit.explanation.effects)) or "nominal"
 
 
 def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:

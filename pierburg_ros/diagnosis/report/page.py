@@ -1,30 +1,27 @@
-"""The report: one self-contained page with plots that can be zoomed, and one picture."""
+"""The report: one self-contained page with plots that can be zoomed."""
 
 from __future__ import annotations
 
 import math
-from importlib import resources
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import jinja2
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+import numpy as np
 
-from pierburg_ros.actuators.wording import quantity_title
-from pierburg_ros.diagnosis.report.figures import (
-    COLOURS,
-    INPUT,
-    MEANINGS,
-    WINDOW,
-    driving_title,
-    signal_figure,
-    thinned,
-    torque_figure,
-)
-from pierburg_ros.diagnosis.result import Result
+from pierburg_ros.actuators.units import Motion
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.report import figures
+from pierburg_ros.diagnosis.report.allowed import bars
+from pierburg_ros.diagnosis.report.places import places
+from pierburg_ros.diagnosis.report.tried import OFF, title
+from pierburg_ros.diagnosis.result import Result, Tried, View
 from pierburg_ros.diagnosis.schema import Diagnosis
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.pages.numbers import words
+from pierburg_ros.pages.over_time import OTHERS
+from pierburg_ros.pages.page import Plot, command, written
+from pierburg_ros.pages.room import page_signals
 
 VERDICTS = {
     "consistent": "the model as described explains the recordings down to their noise",
@@ -39,34 +36,150 @@ ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
 
-def write_page(path: Path, result: Result) -> None:
-    """Write the report as one page that needs no network."""
-    diagnosis = result.diagnosis
-    plot = _embedded(signal_figure(diagnosis, result.signals), True)
-    torque = (
-        _embedded(torque_figure(diagnosis.residual_torque, diagnosis.motion), False)
-        if diagnosis.residual_torque
-        else ""
-    )
-    path.write_text(page(diagnosis, plot, torque), encoding="utf-8")
+def write_page(
+    path: Path, result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()
+) -> None:
+    """Write the report as one page that needs no network.
+
+    `provenance` is what it says of its origin; `sources` are the recordings' files, for commands to copy.
+    """
+    path.write_text(page(result, provenance, sources), encoding="utf-8")
 
 
-def page(diagnosis: Diagnosis, plot: str, torque: str) -> str:
-    """The page around the plots, which are HTML."""
-    environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()) -> str:
+    """The report as HTML."""
+    diagnosis, exhibits = result.diagnosis, result.exhibits
+    views = exhibits.views or (first_view(result),)
+    found = places(diagnosis.locations)
+    context = {
+        "d": diagnosis,
+        "meaning": NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
+        "regimes": [regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
+        "places": found,
+        "tried": [tried_row(row, place) for place, row in enumerate(in_colours(exhibits.tried))],
+        "significant": SIGNIFICANT,
+        "shown": 12,  # rows of a table; the others are folded away
+        "over_time": time_plots(diagnosis, views, exhibits.tried),
+        "residuals": residual_plots(exhibits.views, diagnosis.unit, diagnosis.motion),
+        "laws": law_plots(result),
+        "torques": torque_plots(diagnosis),
+        "limits": limit_plots(result),
+        "horizons": horizon_plots(diagnosis),
+    }
+    return written(
+        "pierburg_ros.diagnosis.report",
+        "report.html",
+        page_signals([signals_of(view) for view in views], ("measured", "recalibrated", "final")),
+        context,
+        model_file=result.model.text(),
+        commands=commands(diagnosis, sources),
+        provenance=provenance,
     )
-    environment.filters.update(number=number, interval=interval, words=words, percent=percent, ties=ties)
-    source = resources.files("pierburg_ros.diagnosis.report") / "report.html"
-    template = environment.from_string(source.read_text(encoding="utf-8"))
-    return template.render(
-        d=diagnosis,
-        meaning=NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
-        regimes=[regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
-        shown=12,  # candidates; the others are folded away
-        plot=plot,
-        torque=torque,
-    )
+
+
+def time_plots(diagnosis: Diagnosis, views: Sequence[View], tried: Sequence[Tried]) -> list[Plot]:
+    """Every recording over time; windows and switches belong to the first."""
+    plots = []
+    for number, view in enumerate(views):
+        found = places(diagnosis.locations) if number == 0 else []
+        figure = figures.time_figure(diagnosis, view, in_colours(tried), found, str(number))
+        caption = f"{view.name}: signals, errors and input over time"
+        plots.append(Plot(f"time-{number}", figure, caption, 820))
+    return plots
+
+
+def residual_plots(views: Sequence[View], unit: str, motion: Motion) -> list[Plot]:
+    """What both errors repeat over time, and where in the state they are."""
+    if not views:
+        return []
+    repeated = "Autocorrelation of the errors; that of white noise is within the grey band"
+    return [
+        Plot("autocorrelation", figures.autocorrelation_figure(views), repeated, 320),
+        Plot("over-angle", figures.state_figure(views, "angle", unit, motion), "Errors over the angle", 320),
+        Plot("over-velocity", figures.state_figure(views, "velocity", unit, motion), "Errors over the velocity", 320),
+    ]
+
+
+def law_plots(result: Result) -> list[Plot]:
+    """The laws inside the models."""
+    laws = result.exhibits.characteristics
+    return [Plot(f"law-{law.id}", figures.law_figure(law), law.title, 340) for law in laws]
+
+
+def torque_plots(diagnosis: Diagnosis) -> list[Plot]:
+    """What no effect explains, over angle and velocity, and over time."""
+    residual = diagnosis.residual_torque
+    if residual is None:
+        return []
+    plots = [
+        Plot(
+            "torque-map",
+            figures.torque_figure(residual, diagnosis.motion),
+            "Missing load torque over angle and velocity",
+            360,
+        )
+    ]
+    if residual.over_time is not None:
+        plots.append(
+            Plot("torque-trend", figures.trend_figure(residual, diagnosis.motion), "Missing load torque over time", 360)
+        )
+    return plots
+
+
+def limit_plots(result: Result) -> list[Plot]:
+    """How much of each other effect is still possible."""
+    limits = bars(result.diagnosis.ruled_out, result.model)
+    if not limits:
+        return []
+    caption = "Effects that are not named: the largest size that these recordings allow; dotted: a typical size"
+    return [Plot("ruled-out", figures.bars_figure(limits), caption, figures.bars_height(limits))]
+
+
+def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
+    """How the error grows with the time of a prediction."""
+    horizons = diagnosis.fit.horizons
+    if not horizons:
+        return []
+    names = ["the whole" if each.after is None else f"{each.after:g} s" for each in horizons]
+    errors = {key: [getattr(each, f"{key}_rmse") for each in horizons] for key in ("nominal", "recalibrated", "final")}
+    return [Plot("horizons", figures.horizons_figure(errors, names, diagnosis.unit), "Error of a prediction", 320)]
+
+
+def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, str]]:
+    """What to run next with the corrected model."""
+    if not sources:
+        return []
+    replay = ["pierburg", "replay", str(sources[0]), "--model", "model.yaml", "--output", "replayed"]
+    again = ["pierburg", "diagnose", "new.mcap", "--model", "model.yaml", "--output", "again"]
+    return [
+        command("See the corrected model beside a recording", replay),
+        command("Look whether a new recording fits the corrected model", again),
+    ]
+
+
+def in_colours(tried: Sequence[Tried]) -> list[Tried]:
+    """What is drawn first, so that rows and curves count their colours alike."""
+    return sorted(tried, key=lambda row: row.key == "")
+
+
+def tried_row(row: Tried, place: int) -> dict[str, Any]:
+    """An explanation for people; the final model comes first, then those with a colour of their own."""
+    off = row.name.startswith(OFF)
+    return {
+        "row": row,
+        "name": f"diagnosed model, {title(row)}" if off else title(row),
+        "colour": "final" if row.key == "final" else f"other-{(place - 1) % OTHERS}",
+        "status": standing(row),
+        "lack": "" if off or row.status == "chosen" else f"{row.lack:,.0f}",
+        "drawn": bool(row.key),
+    }
+
+
+def standing(row: Tried) -> str:
+    """The status of an explanation in words; one may fit better where something remains or time was over."""
+    if row.name.startswith(OFF):
+        return "switched off, nothing fitted again"
+    return "fits better, not chosen" if row.lack < -SIGNIFICANT else row.status
 
 
 def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
@@ -84,68 +197,18 @@ def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
     }
 
 
-def _embedded(figure: Any, with_library: bool) -> str:
-    """A plot as HTML, plotly.js within the first one only."""
-    config = {"displaylogo": False, "responsive": True}
-    return str(figure.to_html(full_html=False, include_plotlyjs=with_library, config=config))
+def first_view(result: Result) -> View:
+    """The first recording where nothing is concluded of it: as measured, and what the models make of it."""
+    signals = result.signals
+    errors = {key: signals["measured"] - signals[key] for key in figures.MODELS}
+    errors = {key: error for key, error in errors.items() if np.isfinite(error).all()}
+    time, measured, command = (signals[name] for name in ("time", "measured", "command"))
+    return View(result.diagnosis.recordings[0], time, measured, command, time[:0], time[:0], errors)
 
 
-def number(value: float | None, digits: int = 4) -> str:
-    """A number for people; a dash where there is none."""
-    return "-" if value is None else f"{value:.{digits}g}"
-
-
-def interval(ends: tuple[float, float] | None) -> str:
-    """Both ends of an interval; a dash where there is none."""
-    return "-" if ends is None else f"{ends[0]:.4g} to {ends[1]:.4g}"
-
-
-def percent(share: float) -> str:
-    """A share in per cent."""
-    return f"{100.0 * share:.0f} %"
-
-
-def words(name: str) -> str:
-    """A name of the catalogue as words."""
-    return name.replace("_", " ").replace("+", " + ")
-
-
-def ties(alternatives: list[list[str]]) -> str:
-    """Alternatives, each a list of names, as words."""
-    return "; or ".join(" with ".join(words(name) for name in tie) for tie in alternatives)
-
-
-def picture(result: Result) -> Figure:
-    """Signals, errors before and after, and input, as a Matplotlib figure."""
-    diagnosis, signals = result.diagnosis, result.signals
-    drawn = Figure(figsize=(10, 8), layout="constrained")
-    FigureCanvasAgg(drawn)
-    above, before, after, driving = drawn.subplots(4, sharex=True, height_ratios=[5, 3, 3, 2])
-    for name, colour in COLOURS.items():
-        _draw(above, signals, name, signals[name], colour)
-        if name != "measured":
-            _draw(after if name == "final" else before, signals, name, signals["measured"] - signals[name], colour)
-    time, values = thinned(signals["time"], signals["command"])
-    driving.step(time, values, where="post", color=INPUT, linewidth=0.8)
-    if diagnosis.fit.noise_floor is not None:
-        band = 1.96 * diagnosis.fit.noise_floor
-        after.axhspan(-band, band, color="#9aa5b1", alpha=0.35, linewidth=0)
-    for axes in (above, before, after, driving):
-        axes.grid(alpha=0.25)
-        for place in diagnosis.locations:
-            axes.axvspan(place.start, place.end, color=WINDOW, alpha=0.3, linewidth=0)
-    drawn.suptitle(headline(diagnosis), fontsize=11, parse_math=False)
-    above.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8, frameon=False)
-    above.set_ylabel(quantity_title(diagnosis.quantity, diagnosis.unit))
-    before.set_ylabel(f"error before [{diagnosis.unit}]")
-    after.set_ylabel(f"error after [{diagnosis.unit}]")
-    driving.set_ylabel(driving_title(diagnosis))
-    driving.set_xlabel("time [s]")
-    return drawn
-
-
-def _draw(axes: Axes, signals: dict[str, Any], name: str, values: Any, colour: str) -> None:
-    axes.plot(*thinned(signals["time"], values), color=colour, linewidth=0.9, label=MEANINGS[name])
+def signals_of(view: View) -> dict[str, Signal]:
+    """The signals of a recording by the names that plots use."""
+    return {"time": view.time, "measured": view.measured, "command": view.command, **view.errors}
 
 
 def headline(diagnosis: Diagnosis) -> str:

@@ -58,7 +58,7 @@ def _signals(recording: Recording) -> dict[str, np.ndarray]:
     return {
         "time": recording.time,
         "measured": recording.measured,
-        "duty": recording.command.at(recording.time, before=0.0),
+        "command": recording.command.at(recording.time, before=0.0),
         "nominal": nothing,
         "recalibrated": nothing,
         "final": nothing,

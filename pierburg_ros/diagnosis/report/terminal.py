@@ -8,6 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pierburg_ros.diagnosis.schema import Diagnosis, RuledOut
+from pierburg_ros.pages.numbers import interval, unit, value
 
 
 def shown(diagnosis: Diagnosis) -> Group:
@@ -46,12 +47,9 @@ def _changed(diagnosis: Diagnosis) -> Table:
     return table
 
 
-def _number(value: float | None, unit: str, interval: tuple[float, float] | None) -> tuple[str, str]:
-    shown_unit = "" if unit == "1" else f" {unit}"
-    return (
-        f"{value:.4g}{shown_unit}" if value is not None else "",
-        f"{interval[0]:.4g} to {interval[1]:.4g}" if interval else "",
-    )
+def _number(middle: float | None, name: str, ends: tuple[float, float] | None) -> tuple[str, str]:
+    shown = value(middle, ends) + unit(name) if middle is not None else ""
+    return shown, interval(ends) if ends else ""
 
 
 def _errors(diagnosis: Diagnosis) -> Table:

@@ -12,25 +12,33 @@ from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimat
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.pages import numbers
 
 SEPARATES = {
-    "armature_resistance": "measure the motor resistance at standstill, or log the motor current",
-    "torque_constant": "log the motor current",
-    "supply_voltage": "log the supply voltage",
-    "spring_preload": "run against both stops and return at duty 0",
-    "spring_stiffness": "run against both stops",
+    "armature_resistance": "measure the motor's resistance at standstill",
+    "torque_constant": "measure the motor's voltage while it is turned at a known speed",
+    "supply_voltage": "log the supply voltage as supply_voltage",
     "coulomb_friction": "move slowly in both directions over the same angles",
 }
 """What tells a base parameter from what looks like it."""
+AT_STOPS = {
+    "spring_preload": "run against both stops and return at duty 0",
+    "spring_stiffness": "run against both stops",
+}
+"""The same, where there are stops."""
+HELD = "measure one of them by other means"
+"""The same, for any that these do not help."""
+HOLD = "Hold what was measured: its value as nominal with `free: false` in the actuator's description."
+"""What to do with a number that was measured by other means."""
 
 
 def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
     """A value with its interval, for a sentence."""
     if estimate.value is None:
-        return f"{name.replace('_', ' ')} unknown"
-    unit = "" if estimate.unit == "1" else f" {estimate.unit}"
-    interval = f" ({estimate.ci95[0]:.4g} to {estimate.ci95[1]:.4g})" if estimate.ci95 else ""
-    return f"{name.replace('_', ' ')} {estimate.value:.4g}{unit}{interval}"
+        return f"{numbers.words(name)} unknown"
+    value = numbers.value(estimate.value, estimate.ci95) + numbers.unit(estimate.unit)
+    ends = f" ({numbers.interval(estimate.ci95)})" if estimate.ci95 else ""
+    return f"{numbers.words(name)} {value}{ends}"
 
 
 def effect_explanation(
@@ -57,7 +65,7 @@ def reason(support: Support, unit: str) -> str:
 def by_evidence(gain: float) -> str:
     """Why an effect is named that the best explanation needs."""
     return (
-        f"Without it the best explanation of the same size leaves {gain:.3g} more in chi-squared, counted in "
+        f"Without it the best explanation of the same size leaves {gain:,.0f} more in chi-squared, counted in "
         "independent samples."
     )
 
@@ -155,25 +163,28 @@ def advice(
     parameters: Mapping[str, BaseParameter],
     hidden: Sequence[NotTestable],
     limits: Sequence[Limit],
+    stops: bool = True,
 ) -> list[str]:
-    """What to record next, most useful first."""
+    """What to record next, most useful first; `stops`: whether the actuator has any to run against."""
     steps = [limit.record for limit in limits]
     for effect in effects:
         for tie in effect.indistinguishable_from:
-            steps.append(_separating(effect.id, tie))
+            steps.append(_separating(effect.id, tie, stops))
     for name, parameter in parameters.items():
         for tie in parameter.indistinguishable_from:
-            steps.append(_separating(name, tie))
+            steps.append(_separating(name, tie, stops))
     if verdict == "unexplained":
         steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
-    steps += [f"To see {item.id}: {item.record}." for item in hidden]
+    steps += [f"To see {numbers.words(item.id)}: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
 
 
-def _separating(name: str, tie: Sequence[str]) -> str:
-    means = [SEPARATES[item] for item in (name, *tie) if item in SEPARATES]
+def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
+    known = {**SEPARATES, **(AT_STOPS if stops else {})}
+    means = [known[item] for item in (name, *tie) if item in known]
     means += [EFFECT[item].record for item in (name, *tie) if item in EFFECT]
-    return f"To tell {name} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means))}."
+    text = f"To tell {numbers.words(name)} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means)) or HELD}."
+    return f"{text} {HOLD}" if "measure" in text else text
 
 
 def _either(ties: Sequence[Sequence[str]]) -> str:

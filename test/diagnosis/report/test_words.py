@@ -6,7 +6,7 @@ from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
 from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
-from pierburg_ros.diagnosis.schema import Effect, NotTestable
+from pierburg_ros.diagnosis.schema import BaseParameter, Effect, NotTestable
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 
 TIED = Effect(
@@ -37,10 +37,19 @@ def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
     limit = Limit("slow_sampling", "sampled at 60 Hz")
     steps = advice("missing_physics", [TIED, TIED], {}, hidden, [limit, limit])
     assert steps[0] == limit.record
-    assert steps[1].startswith("To tell viscous_friction from armature resistance and torque constant: ")
-    assert "log the motor current" in steps[1]
+    assert steps[1].startswith("To tell viscous friction from armature resistance and torque constant: ")
+    assert "measure the motor's resistance at standstill" in steps[1] and "`free: false`" in steps[1]
     assert steps[2] == "To see backlash: duty below 0."
     assert len(steps) == 3
+
+
+def test_advice_sends_nobody_to_stops_that_are_not_there() -> None:
+    spring = BaseParameter(
+        nominal=0.1, value=0.2, unit="N.m", ci95=None, identifiable=True, drifted=True,
+        indistinguishable_from=[["gravity_torque"]],
+    )  # fmt: skip
+    said = [advice("parameter_drift", [], {"spring_preload": spring}, [], [], stops)[0] for stops in (True, False)]
+    assert "stops" in said[0] and "stops" not in said[1] and "by other means" in said[1]
 
 
 def test_what_decides_nothing_is_said_before_anything_else() -> None:

@@ -1,0 +1,37 @@
+"""How much of an effect that is not named the recordings still allow, beside how large it is typically."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from pierburg_ros.diagnosis.schema import RuledOut
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.pages.numbers import unit, words
+from pierburg_ros.plant import Model
+
+
+@dataclass(frozen=True)
+class Bar:
+    """An effect, the limit of its strength in words, and that limit as a share of a typical strength."""
+
+    name: str
+    text: str
+    share: float
+
+
+def bars(ruled_out: Iterable[RuledOut], model: Model) -> list[Bar]:
+    """What is left of each effect that is ruled out, the most excluded first; `model` is the final one."""
+    found = []
+    for item in ruled_out:
+        effect = EFFECT[item.id]
+        base = effect.parameter(item.parameter).above
+        start = model.values[base] if base is not None else 0.0
+        typical = effect.typical_values(model.values, model.scales)[f"{item.id}.{item.parameter}"] - start
+        if item.above is not None and item.above > 0.0 and typical > 0.0:
+            text = f"above {item.above:.3g}{unit(item.unit)}"
+            found.append(Bar(words(item.id), text, typical / item.above))
+        elif item.below is not None and item.below > start and typical > 0.0:
+            text = f"below {item.below:.3g}{unit(item.unit)}"
+            found.append(Bar(words(item.id), text, (item.below - start) / typical))
+    return sorted(found, key=lambda bar: bar.share)

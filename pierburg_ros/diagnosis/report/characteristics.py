@@ -1,0 +1,192 @@
+"""The laws inside a model as curves: friction, load, sensor and play, with what the recordings say around them.
+
+The points are partial residuals: the final law plus what the recording lacks where it was taken, so that they lie on
+the final curve where it is right (Larsen, McCleary, The use of partial residual plots in regression analysis (1972)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.actuators.units import unit_of
+from pierburg_ros.actuators.wording import place, travel_factor, travel_title
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
+from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.result import Characteristic
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
+from pierburg_ros.effects import EFFECTS
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import angle_per_unit, decoded
+from pierburg_ros.plant.torques import friction, load
+
+NODES = 121
+"""Points of a curve. Work: one is drawn every five pixels."""
+POINTS = 1200
+"""Points of the recordings beside a curve. Work: more lie on top of each other."""
+
+
+@dataclass(frozen=True)
+class Lacking:
+    """The load torque [N.m] that the final model lacks while the shaft moves, at angle [rad] and velocity [rad/s]."""
+
+    angle: Signal
+    velocity: Signal
+    torque: Signal
+
+
+def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristic, ...]:
+    """The laws of the actuator and its sensor; none for a sensor of speed, which shows no angle."""
+    if found.data.actuator.quantity == "speed":
+        return ()
+    models = {
+        "nominal": conclusion.nominal.model,
+        "recalibrated": conclusion.recalibrated.model,
+        "final": conclusion.model,
+    }
+    run, own = found.data.runs[0], found.data.scales
+    missing = missing_torque(found.data, run, conclusion.model)
+    lacking = Lacking(missing.angle * own.angle, missing.velocity * own.angle / own.time, missing.torque * own.torque)
+    motion = motion_of(run, found.data.actuator, found.data.noise)
+    residual = (run.measured - run.simulated(conclusion.model, conclusion.final.switch)) * found.data.angle_per_unit
+    laws = [_friction(models, lacking), _load(models, lacking, motion.angle), _sensor(models, motion.angle, residual)]
+    return (*laws, *_plays(conclusion.model))
+
+
+def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
+    """Friction over velocity at the middle of the angles at which the shaft moved."""
+    motion = models["final"].actuator.motion
+    fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
+    middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
+    # more nodes near standstill, where the law bends
+    side = fastest * np.linspace(0.0, 1.0, NODES // 2) ** 2
+    velocity = np.concatenate([-side[::-1], [math.nan], side])
+    curves = {name: (velocity, friction_torque(model, velocity, middle)) for name, model in models.items()}
+    inside = np.abs(missing.velocity) <= fastest
+    known = ~np.isnan(velocity)
+    law = np.interp(missing.velocity[inside], velocity[known], curves["final"][1][known])
+    points = _some(missing.velocity[inside], law + missing.torque[inside])
+    return Characteristic(
+        "friction",
+        f"friction at {place(middle, middle, motion)}",
+        f"velocity [{unit_of('rad/s', motion)}]",
+        f"friction [{unit_of('N.m', motion)}]",
+        curves,
+        points,
+    )
+
+
+def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
+    """Friction [N.m], positive when it hinders opening, at steady `velocity` [rad/s], shape (velocities,).
+
+    The motor torque is the one that keeps that velocity. Where the velocity is 0 it is what breaks the shaft loose;
+    the side is that of the nearest other velocity.
+    """
+    record = model.record()[0]
+    result = np.full(velocity.size, math.nan)
+    middle = velocity.size // 2
+    for index, speed in enumerate(velocity):
+        if math.isnan(speed):
+            continue
+        side = math.copysign(1.0, speed) if speed != 0.0 else (1.0 if index > middle else -1.0)
+        weight, drag = load.load(record, angle, 0.0, 0.0)[0], friction.damping(record, side) * speed
+        level = 0.0
+        for _ in range(8):  # the level may depend on the motor torque, which it is a part of
+            level = friction.level(record, side, speed, angle, weight + drag + side * level)[0]
+        result[index] = side * level + drag
+    return result
+
+
+def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Characteristic:
+    """Torque of spring, weight and all else that loads the shaft over its angle."""
+    nodes = np.linspace(*_travel(models["final"], angle), NODES)
+    motion = models["final"].actuator.motion
+    drawn = travel_factor(motion)
+    curves = {name: (drawn * nodes, load_torque(model, nodes)) for name, model in models.items()}
+    points = _some(drawn * missing.angle, load_torque(models["final"], missing.angle) + missing.torque)
+    title = f"load that closes [{unit_of('N.m', motion)}]"
+    return Characteristic("load", "spring and load", travel_title(motion), title, curves, points)
+
+
+def load_torque(model: Model, angle: Signal) -> Signal:
+    """Torque that loads the standing shaft at the start [N.m], positive closes, shape (angles,)."""
+    record = model.record()[0]
+    return np.array([load.load(record, float(each), 0.0, 0.0)[0] for each in angle])
+
+
+def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Characteristic:
+    """What the sensor shows too much by the nominal scale, over the true angle."""
+    nominal, final = models["nominal"], models["final"]
+    motion = final.actuator.motion
+    drawn = travel_factor(motion)
+    low, high = _travel(final, angle)
+    shown = np.linspace(low, high, NODES)
+    values = _values_at(nominal, shown)
+    curves = {}
+    for name, model in models.items():
+        true = decoded(model, values)
+        curves[name] = (drawn * true, drawn * (shown - true))
+    true = decoded(final, _values_at(nominal, angle))
+    x, y = _some(drawn * true, drawn * (angle - true + residual))
+    return Characteristic(
+        "sensor",
+        "sensor: shown less true place",
+        f"true {travel_title(motion)}",
+        travel_title(motion).replace("angle", "deviation").replace("position", "deviation"),
+        curves,
+        (x, y),
+    )
+
+
+def _values_at(model: Model, angle: Signal) -> Signal:
+    """What the straight sensor of `model` gives at an `angle` [rad], measured unit."""
+    origin = float(decoded(model, np.zeros(1))[0])
+    return np.asarray((angle - origin) / angle_per_unit(model))
+
+
+def _plays(model: Model) -> list[Characteristic]:
+    """For every play that acts: where the driven side is while the driving one goes to and fro."""
+    found, motion = [], model.actuator.motion
+    for effect in EFFECTS:
+        if effect.play is None or not effect.acts(model.values):
+            continue
+        gap = model.values[f"{effect.id}.{effect.play}"]
+        there = np.linspace(0.0, 6.0 * gap, NODES)
+        driving = np.concatenate([there, there[::-1]])
+        driven = np.concatenate([np.maximum(there - gap, 0.0), np.minimum(there[::-1], 5.0 * gap)])
+        name = effect.id.replace("_", " ")
+        found.append(
+            Characteristic(
+                effect.id,
+                f"{name}: to and fro",
+                f"driving side: {travel_title(motion)}",
+                f"driven side: {travel_title(motion)}",
+                {"final": (travel_factor(motion) * driving, travel_factor(motion) * driven)},
+            )
+        )
+    return found
+
+
+def _travel(model: Model, angle: Signal) -> tuple[float, float]:
+    """From stop to stop, or as far as the shaft went where there is none [rad]."""
+    actuator = model.actuator
+    low, high = float(np.min(angle)), float(np.max(angle))
+    return (
+        actuator.lower_stop if math.isfinite(actuator.lower_stop) else low,
+        actuator.upper_stop if math.isfinite(actuator.upper_stop) else high,
+    )
+
+
+def _some(x: Signal, y: Signal) -> tuple[Signal, Signal]:
+    """At most `POINTS` of the points, evenly taken, without the hundredth that lies farthest out to either side."""
+    if x.size == 0:
+        return x, y
+    low, high = np.quantile(y, [0.01, 0.99])
+    kept = np.flatnonzero((y >= low) & (y <= high))
+    kept = kept[:: max(1, kept.size // POINTS)]
+    return x[kept], y[kept]
