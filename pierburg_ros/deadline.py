@@ -9,13 +9,20 @@ from typing import TypeVar
 
 Result = TypeVar("Result")
 
+SLOWEST = 5.0
+"""How many times longer than on an idle machine a deadline may be put off. Chosen: eight busy processes beside the two
+threads of a diagnosis leave them two fifths of a core, 2.5 times as long for as much work; not varied."""
+
 
 class OutOfTime(BaseException):
     """The time is over: like an interrupt from the keyboard it waits for nothing."""
 
 
 class Deadline:
-    """So many `seconds` from now; None: no limit but an interrupt.
+    """So many `seconds` of an idle machine from now; None: no limit but an interrupt.
+
+    Time in which others take the processor counts less, so that a busy machine does not change a verdict: the end has
+    come when the process has worked for so many seconds of processor time, or `SLOWEST` times as many have gone by.
 
     deadline = Deadline(30.0)
     found = deadline.attempt(lambda: long_work(deadline.check), otherwise=nothing)
@@ -23,18 +30,20 @@ class Deadline:
     """
 
     def __init__(self, seconds: float | None = None) -> None:
-        self._end = math.inf if seconds is None else time.monotonic() + seconds
+        self._seconds = math.inf if seconds is None else seconds
+        self._begun, self._worked = time.monotonic(), time.process_time()
         self._parent: Deadline | None = None
         self.stopped = False
 
     @property
     def left(self) -> float:
-        """Time that is left [s], not below 0; infinite where there is no limit."""
-        return max(self._end - time.monotonic(), 0.0)
+        """Time that is left at least [s], not below 0; infinite where there is no limit."""
+        gone, worked = time.monotonic() - self._begun, time.process_time() - self._worked
+        return max(self._seconds - max(min(gone, worked), gone / SLOWEST), 0.0)
 
     def part(self, share: float) -> Deadline:
         """One that ends when this `share` of what is left of it is over; where that stops, it is noted here too."""
-        part = Deadline(None if math.isinf(self._end) else share * self.left)
+        part = Deadline(None if math.isinf(self._seconds) else share * self.left)
         part._parent = self
         return part
 
@@ -60,6 +69,6 @@ class Deadline:
     def _stop(self, interrupted: bool = False) -> None:
         self.stopped = True
         if interrupted:
-            self._end = -math.inf
+            self._seconds = -math.inf
         if self._parent is not None:
             self._parent._stop(interrupted)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
 from queue import SimpleQueue
 from threading import Thread
@@ -83,17 +83,25 @@ class _Threads(Executor):
         timeout: float | None = None,
         chunksize: int = 1,
     ) -> Iterator[Result]:
-        """Results in the order of the items; OutOfTime where the deadline comes first."""
-        left = self._deadline.left
-        limit = timeout if math.isinf(left) else left if timeout is None else min(left, timeout)
-        return self._in_time(super().map(fn, *iterables, timeout=limit, chunksize=chunksize))
+        """Results in the order of the items; OutOfTime where the deadline comes first, TimeoutError after `timeout`."""
+        own = Deadline(timeout)
+        futures = [self.submit(fn, *items) for items in zip(*iterables)]  # noqa: B905  as map of an executor is
+        return self._in_time(futures, own)
 
-    def _in_time(self, results: Iterator[Result]) -> Iterator[Result]:
+    def _in_time(self, futures: Sequence[Future[Result]], own: Deadline) -> Iterator[Result]:
+        """The results one by one; those that are not asked for any more are cancelled."""
         try:
-            yield from results
-        except TimeoutError:
-            self._deadline.check()
-            raise
+            for future in futures:
+                while not future.done():
+                    left = min(self._deadline.left, own.left)
+                    wait([future], None if math.isinf(left) else left)
+                    self._deadline.check()
+                    if not own.left:
+                        raise TimeoutError
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
 
     def submit(
         self, function: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs

@@ -44,6 +44,7 @@ def test_a_part_that_is_over_leaves_time_for_the_rest():
 
 def test_who_waits_for_workers_waits_no_longer_than_that():
     release = threading.Event()
+    """Nor where nothing works: the time that has gone by counts too, if less."""
     deadline = Deadline(0.05)
 
     def work():
@@ -52,3 +53,28 @@ def test_who_waits_for_workers_waits_no_longer_than_that():
 
     assert deadline.attempt(work, otherwise=None) is None
     release.set()
+
+
+def test_time_in_which_others_work_counts_less(monkeypatch):
+    """Clock and processor time as told: ten seconds of work on a machine that gives a half of a core, and on none."""
+    now = {"clock": 0.0, "work": 0.0}
+    monkeypatch.setattr("pierburg_ros.deadline.time.monotonic", lambda: now["clock"])
+    monkeypatch.setattr("pierburg_ros.deadline.time.process_time", lambda: now["work"])
+    deadline = Deadline(10.0)
+    now.update(clock=19.0, work=9.5)
+    assert deadline.left == pytest.approx(0.5)
+    now.update(clock=21.0, work=10.5)
+    assert deadline.left == 0.0
+    now.update(clock=49.0, work=1.0)
+    assert deadline.left == pytest.approx(0.2)
+    now.update(clock=51.0, work=1.0)
+    assert deadline.left == 0.0
+
+
+def test_two_cores_do_not_halve_the_time(monkeypatch):
+    now = {"clock": 0.0, "work": 0.0}
+    monkeypatch.setattr("pierburg_ros.deadline.time.monotonic", lambda: now["clock"])
+    monkeypatch.setattr("pierburg_ros.deadline.time.process_time", lambda: now["work"])
+    deadline = Deadline(10.0)
+    now.update(clock=8.0, work=16.0)
+    assert deadline.left == pytest.approx(2.0)
