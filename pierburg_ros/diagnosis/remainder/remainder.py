@@ -47,7 +47,8 @@ def remainder(
 
     Several recordings vouch for effects that each lower the error on recordings left out, a single one for quantities
     that carry most of the evidence when it is counted against what remains. What is then left is fitted as a torque
-    over angle and velocity, kept where unseen data confirm it.
+    over angle and velocity, kept where unseen data confirm it. After a search that was stopped nothing is named that
+    drift alone surpasses on samples that validate: what explains them together may not have been tried.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
@@ -56,7 +57,7 @@ def remainder(
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif stood := supported(data, found.nominal, pool, progress):
+        elif (stood := supported(data, found.nominal, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -69,6 +70,14 @@ def remainder(
         known = estimates(estimator, base, pool.map)
     confirmed = shape.after < CONFIRMED * shape.before
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
+
+
+def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
+    """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
+    if deadline is None or not deadline.stopped:
+        return False
+    plain = found.estimator
+    return plain.validation_misfit(plain.restated(stood.scored.fit)) > plain.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

@@ -61,7 +61,7 @@ def document(
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
     short = quality.limits_of(data.runs, actuator, data.noise)
-    text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit)
+    text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
     places, ranges = located(data, conclusion)
     return Diagnosis(
         schema=2,

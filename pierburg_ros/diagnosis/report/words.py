@@ -106,8 +106,9 @@ def summary(
     changes: Sequence[Change],
     fit: FitQuality,
     unit: str,
+    stopped: bool = False,
 ) -> str:
-    """One paragraph for a technician."""
+    """One paragraph for a technician; `stopped`: before all of the catalogue was tried."""
     before, after, floor = fit.validation.nominal_rmse, fit.validation.final_rmse, fit.noise_floor
     errors = (
         f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
@@ -128,7 +129,8 @@ def summary(
         return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
     listed = _listed([effect.id for effect in effects])
     helped = f" What the recordings support all the same is {listed}. {named}{also}" if effects else ""
-    return f"Something is left that no effect of the catalogue removes.{helped} {errors}"
+    left = "so far" if stopped else "that no effect of the catalogue removes"
+    return f"Something is left {left}.{helped} {errors}"
 
 
 def warned(data: Data, verdict: Verdict, text: str) -> str:
