@@ -85,7 +85,7 @@ class _Threads(Executor):
     ) -> Iterator[Result]:
         """Results in the order of the items; OutOfTime where the deadline comes first, TimeoutError after `timeout`."""
         own = Deadline(timeout)
-        futures = [self.submit(fn, *items) for items in zip(*iterables)]  # noqa: B905  as map of an executor is
+        futures = [self.submit(fn, *items) for items in zip(*iterables, strict=False)]
         return self._in_time(futures, own)
 
     def _in_time(self, futures: Sequence[Future[Result]], own: Deadline) -> Iterator[Result]:

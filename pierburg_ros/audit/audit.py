@@ -38,6 +38,8 @@ Hz."""
 FAR_BETTER = 0.2
 """Share of the cost as read that a slip may leave where the motion is explained as it is read, too. Chosen: one effect
 that is missing halves it, a wrong divider takes nine tenths."""
+SENSOR = {"sensor_scale", "sensor_offset", "hall_voltage_closed", "hall_voltage_open"}
+"""Numbers of an actuator that say what its sensor reads."""
 ALIKE = 1.1
 """Slips that cost up to so many times as much as the best are told together. Chosen: a tenth is less than one effect
 that is missing makes."""
@@ -85,8 +87,11 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:
-    """A scale or zero of the sensor, where readings lie doubtfully beyond the stops and it explains far better."""
-    if not impossible(signals, nominal, DOUBTFUL):
+    """A scale or zero of the sensor, where readings lie doubtfully beyond the stops and it explains far better.
+
+    Where these are free numbers of the actuator, the search finds them as a drift, with an interval.
+    """
+    if SENSOR & set(nominal.actuator.free) or not impossible(signals, nominal, DOUBTFUL):
         return None
     found = undone(tuple(between_stops(signals, nominal)), FAR_BETTER * given.cost, nominal)
     return blamed(found, signals, given, nominal) if found else None

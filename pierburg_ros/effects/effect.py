@@ -120,6 +120,8 @@ class Parameter(parameter.Parameter):
     """Base parameter that it stays below."""
     stride: float | None = None
     """Largest factor by which one linear step may scale it; None: a step does not scale it."""
+    inverse: bool = False
+    """A stiffness: the effect is the stronger the smaller it is, though absent at 0, which stands for rigid."""
     rhythm: bool = False
     """A frequency: known as finely as the recording is long, and moved in small steps."""
     dated: bool = False

@@ -21,6 +21,7 @@ EFFECT = Effect(
             LARGEST,
             plausible=(1.76, 35.0),
             logarithmic=True,
+            inverse=True,
         ),
         Parameter(
             "damping",

@@ -28,6 +28,7 @@ EFFECT = Effect(
             LARGEST,
             plausible=(2.35, 35.0),
             logarithmic=True,
+            inverse=True,
         ),
         Parameter(
             "damping",

@@ -26,6 +26,7 @@ EFFECT = Effect(
             LARGEST,
             plausible=(2.9, 35.0),
             logarithmic=True,
+            inverse=True,
         ),
         Parameter(
             "damping",

@@ -14,12 +14,14 @@ from pierburg_ros.diagnosis.search.search import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.data import with_validation
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 ONE_SIDED = 2.71
@@ -63,13 +65,20 @@ class _Case:
 
     @property
     def above(self) -> bool:
-        """Whether a smaller value makes it stronger: of the strengths, those searched by their logarithm."""
-        return EFFECT[self.variant.effect].parameter(self.parameter).logarithmic
+        """Whether a smaller value makes it stronger."""
+        return EFFECT[self.variant.effect].parameter(self.parameter).inverse
 
     def at(self, factor: float) -> Start:
         """The start with its strength multiplied."""
         value = self.start[self.parameter]
         return {**self.start, self.parameter: value / factor if self.above else value * factor}
+
+    def factors(self, nominal: Model, duration: float) -> tuple[float, float]:
+        """The least and the largest factor at which the strength is within what a search would look at."""
+        axis = Coordinates((f"{self.variant.effect}.{self.parameter}",), nominal, duration).axes[0]
+        own = abs(self.start[self.parameter])
+        low, high = max(axis.value(axis.lower), 0.0), axis.value(axis.upper)
+        return (own / high, own / low) if self.above else (low / own, high / own)
 
 
 def limits(
@@ -146,10 +155,12 @@ def _linear(estimator: Estimator, base: Fit, case: _Case) -> float:
     """Factor on the strength of a start at which it is excluded while the base parameters follow linearly.
 
     Infinite where no strength is. A change that goes by the strength, s u, leaves (r - s u)^2: least at u r / u^2, and
-    by the square root of what is allowed beyond that over the norm of u it is excluded.
+    by the square root of what is allowed beyond that over the norm of u it is excluded. A strength too small for a
+    search is not looked at, since it may take the simulator for ever; nor is one too large.
     """
     projected = projection(base)
     residual = projected(base.solution.residual)
+    least, largest = case.factors(estimator.nominal, estimator.data.duration)
     allowed, factor = _allowed(case, base), 1.0
     for _ in range(STEPS):
         changed = difference(estimator, base, case.variant, case.at(factor))
@@ -160,7 +171,9 @@ def _linear(estimator: Estimator, base: Fit, case: _Case) -> float:
         if size * factor**2 < 1e-6:
             return math.inf
         best = max(float(unit @ residual) / size, 0.0)
-        following = best + math.sqrt(allowed / size)
+        following = max(best + math.sqrt(allowed / size), least)
+        if following > largest:
+            return math.inf
         if abs(math.log(following / factor)) < 0.1:
             return following
         factor = following

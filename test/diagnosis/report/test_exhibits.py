@@ -35,7 +35,7 @@ def test_limits_stand_beside_typical_sizes():
 
 
 def test_friction_over_velocity_is_the_stribeck_curve():
-    """T_c + (T_b - T_c) exp(-(w / w_s)^2) against the motion, and T_b where it stands (docs/contract.md, section 7)."""
+    """T_c + (T_b - T_c) exp(-(w / w_s)^2) against the motion, T_b where it stands (section 7 of docs/contract.md)."""
     model = NOMINAL.with_values({"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1})
     velocity = np.array([-0.2, -0.05, -0.0, np.nan, 0.0, 0.05, 0.2])
     level = 0.2007 + (0.27 - 0.2007) * np.exp(-((velocity / 0.1) ** 2))
