@@ -127,11 +127,11 @@ def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
 
 
 def _cases(found: Found, final: Fit) -> Iterator[_Case]:
-    """Each way to act with a single strength, from starts spread over all there are."""
+    """Each way to act with a single strength, from starts spread over all there are; one of nothing cannot grow."""
     for variant, starts in starts_of(found.data, final.model).items():
         strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
         if len(strengths) == 1:
-            for start in _spread(starts):
+            for start in _spread([start for start in starts if start[strengths[0]] != 0.0]):
                 yield _Case(variant, start, strengths[0])
 
 
