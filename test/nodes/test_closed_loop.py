@@ -37,6 +37,9 @@ def recorded(tmp_path_factory):
         graph.start("plant", f"hall_voltage_noise:={NOISE}", "command_timeout:=2.0")
         graph.start("controller", "hall_timeout:=2.0")
         graph.until(lambda: hall_voltage and active, "the loop")
+        # this process, the controller and the recorder: before that the beginning of the motion would be missing
+        graph.until(lambda: graph.node.count_subscribers("hall_voltage") >= 3, "the recorder to listen to the sensor")
+        graph.until(lambda: graph.node.count_subscribers("applied_duty") >= 1, "the recorder to listen to the duty")
         for setpoint in (0.8, 0.3, 1.2):
             graph.publish("setpoints", Float64(data=setpoint))
             wanted = 0.42 + setpoint * 4.1 / (np.pi / 2)
