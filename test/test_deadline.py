@@ -55,11 +55,17 @@ def test_who_waits_for_workers_waits_no_longer_than_that():
     release.set()
 
 
-def test_time_in_which_others_work_counts_less(monkeypatch):
-    """Clock and processor time as told: ten seconds of work on a machine that gives a half of a core, and on none."""
-    now = {"clock": 0.0, "work": 0.0}
-    monkeypatch.setattr("pierburg_ros.deadline.time.monotonic", lambda: now["clock"])
-    monkeypatch.setattr("pierburg_ros.deadline.time.process_time", lambda: now["work"])
+@pytest.fixture
+def now(monkeypatch):
+    """Clock and processor time as told."""
+    told = {"clock": 0.0, "work": 0.0}
+    monkeypatch.setattr("pierburg_ros.deadline.time.monotonic", lambda: told["clock"])
+    monkeypatch.setattr("pierburg_ros.deadline.time.process_time", lambda: told["work"])
+    return told
+
+
+def test_time_in_which_others_work_counts_less(now):
+    """Ten seconds of work on a machine that gives a half of a core, and on one that gives next to nothing."""
     deadline = Deadline(10.0)
     now.update(clock=19.0, work=9.5)
     assert deadline.left == pytest.approx(0.5)
@@ -71,10 +77,7 @@ def test_time_in_which_others_work_counts_less(monkeypatch):
     assert deadline.left == 0.0
 
 
-def test_two_cores_do_not_halve_the_time(monkeypatch):
-    now = {"clock": 0.0, "work": 0.0}
-    monkeypatch.setattr("pierburg_ros.deadline.time.monotonic", lambda: now["clock"])
-    monkeypatch.setattr("pierburg_ros.deadline.time.process_time", lambda: now["work"])
+def test_two_cores_do_not_halve_the_time(now):
     deadline = Deadline(10.0)
     now.update(clock=8.0, work=16.0)
     assert deadline.left == pytest.approx(2.0)
