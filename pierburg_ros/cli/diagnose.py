@@ -42,7 +42,7 @@ def diagnose(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
-    budget: Annotated[float, typer.Option(min=1.0, help="Seconds after which the best verdict yet is given.")] = (
+    budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
         USUAL_BUDGET
     ),
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,

@@ -36,7 +36,8 @@ def diagnose(
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
     `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
-    `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; without a budget it takes what it takes.
+    `budget` [s] of an idle machine (`Deadline`), or Ctrl-C, the best verdict yet is given and marked as such; without a
+    budget it takes what it takes.
     InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
     model: `nominal` is then fitted to them first. Where signals are not what they are read as, that is all that is
     said, unless it goes on by `force`.

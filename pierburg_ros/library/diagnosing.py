@@ -134,7 +134,8 @@ def diagnose(
     the Pierburg valve). Recordings that your own simulator made of the same actuator, as `simulation`, stand for the
     model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
     words what is being tried. `jobs` is the number of fits at a time, by default one for each core. Takes seconds to
-    minutes: after `budget` [s], or Ctrl-C, the best verdict yet is given and marked as such; None takes what it takes.
+    minutes: after `budget` [s] of an idle machine, or Ctrl-C, the best verdict yet is given and marked as such; None
+    takes what it takes.
     Where signals are not what they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes
     on. InputError where a recording cannot be used.
 
