@@ -136,8 +136,10 @@ def terminable() -> Iterator[None]:
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
-    """The arguments with an option of `SPREAD` repeated before each of its values: --simulation a b is one of a and one
-    of b. Click has no option with several values."""
+    """The arguments with an option of `SPREAD` repeated before each of its values.
+
+    `--simulation a b` is one of a and one of b. Click has no option with several values.
+    """
     found: list[str] = []
     option = ""
     for argument in arguments:

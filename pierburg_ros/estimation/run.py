@@ -115,8 +115,10 @@ def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Piece
 
 
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
-    """The first part, and the others from where the shaft first rests: where it is in motion after a gap, a simulation
-    that begins a little off would rest elsewhere."""
+    """The first part, and the others from where the shaft first rests.
+
+    Where it is in motion after a gap, a simulation that begins a little off would rest elsewhere.
+    """
     yield parts[0]
     for part in parts[1:]:
         sample = first_rest(part.measured, noise_of(part.time, part.measured))
