@@ -13,6 +13,7 @@ from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
@@ -41,6 +42,7 @@ def diagnose(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    rerun: RerunOption = None,
     jobs: JobsOption = None,
     budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
         USUAL_BUDGET
@@ -50,8 +52,8 @@ def diagnose(
 ) -> None:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
-    verdict yet.
+    Writes diagnosis.json, model.yaml, report.html, overview.png and diagnosis.mcap (for Foxglove and PlotJuggler,
+    beside the recording) to the output folder. Ctrl-C gives the best verdict yet.
     """
     nominal = chosen_or_valve(model, actuator)
     if simulation_signals and not simulation:
@@ -65,8 +67,11 @@ def diagnose(
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)
+    if rerun:
+        diagnosis.write_rerun(rerun)
     terminal().print(
-        shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
+        shown(diagnosis.document),
+        f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png, diagnosis.mcap",
     )
 
 
