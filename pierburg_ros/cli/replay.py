@@ -24,7 +24,7 @@ def replay(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
@@ -37,6 +37,7 @@ def replay(
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)
     console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    return comparison.to_json()
 
 
 def summary(result: Result) -> Table:
