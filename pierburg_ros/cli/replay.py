@@ -26,7 +26,7 @@ def replay(
     topic: TopicOption = None,
     time: TimeOption = None,
     rerun: RerunOption = None,
-) -> None:
+) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
@@ -41,6 +41,7 @@ def replay(
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)
     console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    return comparison.to_json()
 
 
 def summary(result: Result) -> Table:
