@@ -58,6 +58,8 @@ TEST_TOOLS = [
     "pandas",
 ]
 
+DOCS = ["sphinx", "myst-parser", "furo"]
+
 setup(
     name=PACKAGE,
     version="0.1.0",
@@ -108,7 +110,7 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "docs": DOCS, "tables": ["pandas"], "mujoco": MUJOCO},
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },
