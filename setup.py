@@ -87,6 +87,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/layouts", sorted([*glob("layouts/*.json"), *glob("layouts/*.xml")])),
         (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
         (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
