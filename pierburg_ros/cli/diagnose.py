@@ -66,9 +66,9 @@ def diagnose(
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)
-    terminal().print(
-        shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
-    )
+    console = terminal()
+    console.print(shown(diagnosis.document))
+    console.print(f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png", soft_wrap=True)
     return diagnosis.to_json()
 
 
