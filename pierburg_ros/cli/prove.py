@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.table import Table
 
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import planned
@@ -48,7 +48,9 @@ def prove(
         return {"trials": str(output / "trials")}
     done = document.Run(results, plan)
     document.write(done, output, docs)
-    terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
+    console = terminal()
+    console.print(summary(done))
+    console.print(f"Results in {output}: proof.md, results.json", soft_wrap=True)
     return (output / "results.json").read_text(encoding="utf-8")
 
 
@@ -69,11 +71,8 @@ class Reporter:
         self.show(Step("blind trials", done, total, f"{self.right} right, {self.alarms} false alarms"))
 
 
-def summary(done: document.Run) -> Table:
+def summary(done: document.Run) -> Listing:
     """The headline figures."""
-    table = Table(title=f"Blind trials, n = {len(done.results)} of {done.plan.size}", title_justify="left")
-    table.add_column("figure")
-    table.add_column("count (95 % Wilson interval)")
-    for name, share in document.headline(done).items():
-        table.add_row(name, str(share))
-    return table
+    rows = [(name, str(share)) for name, share in document.headline(done).items()]
+    title = f"Blind trials, n = {len(done.results)} of {done.plan.size}"
+    return Listing(("figure", "count (95 % Wilson interval)"), rows, title)
