@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
-from pierburg_ros.diagnosis.limits.limits import Limit, limits
+from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
@@ -59,7 +59,7 @@ def diagnose(
     parts = deadline.attempt(
         lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)
     )
-    excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
+    excluded = limits(found, conclusion.final, progress, jobs, deadline)
     written = document(found, conclusion, parts, excluded, deadline.stopped)
     shown = signals(longest(data), conclusion)
     result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))

@@ -181,6 +181,14 @@ def advice(
     return list(dict.fromkeys(steps))
 
 
+def untested(effects: Sequence[str]) -> list[str]:
+    """What to do about limits for which there was no time."""
+    if not effects:
+        return []
+    listed = ", ".join(numbers.words(effect) for effect in effects)
+    return [f"There was no time to look how much of these is ruled out: {listed}. Give more with --budget or --thorough."]
+
+
 def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
     known = {**SEPARATES, **(AT_STOPS if stops else {})}
     means = [known[item] for item in (name, *tie) if item in known]
