@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
@@ -42,12 +43,14 @@ def diagnose(
     model: `nominal` is then fitted to them first. Where signals are not what they are read as, that is all that is
     said, unless it goes on by `force`.
     """
+    each_cleaned = [cleaned(recording, number) for number, recording in enumerate(recordings)]
+    recordings = [each.recording for each in each_cleaned]
     faults = [] if force else audit(recordings, nominal)
     if faults:
         return refusal(recordings, nominal, faults)
     simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
     nominal = simulator.model if simulator else nominal
-    data = evidence(recordings, nominal)
+    data = said_of(each_cleaned, evidence(recordings, nominal))
     data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
     found = search(data, nominal, progress, jobs, deadline=deadline)

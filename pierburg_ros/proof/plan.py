@@ -6,7 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.proof.concealment import OVER_GRAPH, PUBLISHED, draw, draw_over_graph, schedule
+from pierburg_ros.proof.concealment import (
+    DIRTY,
+    OVER_GRAPH,
+    PUBLISHED,
+    draw,
+    draw_dirty,
+    draw_over_graph,
+    schedule,
+)
 from pierburg_ros.proof.trial import Trial
 
 
