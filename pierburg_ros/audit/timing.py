@@ -30,10 +30,10 @@ fifth of the sensor's rate is rare, and one that is early besides is not run at 
 PARTS = 6
 """Parts of a recording in which the lag is told by itself. Chosen: each of a minute's has ten seconds; not varied."""
 TOLD = 4
-"""Parts whose lag must be seen for a drift to be told. Derived: two always lie on a line, and three that friction displaced may."""
+"""Parts whose lag must be seen for a drift to be told. Derived: two always lie on a line, and three that friction
+displaced may."""
 DRIFTS = 10.0
-"""Samples by which the lag must drift from end to end. Measured: in clean recordings (n = 82) those that lie on a line do
-so by 2 at most."""
+"""Samples by which the lag must drift from end to end. Chosen: 20 ms at 500 Hz; less is a small delay at either end."""
 STRAIGHT = 0.15
 """Share of that drift, beside `EARLY`, by which lags may lie off their line. Chosen: what friction does with the moment
 of a start is less; not varied."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
+from pierburg_ros.diagnosis.disturbance.apart import apart
+from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
@@ -14,7 +17,7 @@ from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
-from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.search import Progress
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
@@ -54,10 +57,17 @@ def diagnose(
     data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
     found = search(data, nominal, progress, jobs, deadline=deadline)
+    if verdict_on(found.chosen) == "unexplained" and len(recordings) == 1:
+        before = found
+        found = deadline.attempt(lambda: apart(before, recordings[0], progress, jobs, deadline), before)
     rest = None
-    if verdict_on(found.chosen) == "unexplained":
+    if verdict_on(found.chosen) == "unexplained" and (doubt := _doubt(found, recordings)):
+        found, rest = replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
+    elif verdict_on(found.chosen) == "unexplained":
         rest = deadline.attempt(lambda: remainder(found, progress, jobs, deadline), unexamined(found))
     conclusion = conclude(found, rest)
+    if found.data.disturbed:
+        conclusion = replace(conclusion, verdict="unexplained")
     parts = deadline.attempt(
         lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)
     )
@@ -66,6 +76,11 @@ def diagnose(
     shown = signals(longest(data), conclusion)
     result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result
+
+
+def _doubt(found: Found, recordings: Sequence[Recording]) -> str | None:
+    """Why nothing that is left of a recording may be named."""
+    return rounded(found, recordings[0]) if len(recordings) == 1 else None
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

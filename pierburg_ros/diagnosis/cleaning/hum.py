@@ -18,7 +18,8 @@ MULTIPLES = (1, 2, 3)
 PERIOD = 0.1
 """Time [s] over which the hum vanishes in the mean. Derived: five periods of 50 Hz and six of 60 Hz."""
 STILL = 4.0
-"""Standard deviations by which means over `PERIOD` may differ while the shaft stands. Derived: noise does so with 6e-5."""
+"""Standard deviations by which means over `PERIOD` may differ while the shaft stands. Derived: noise does so with
+6e-5."""
 LEAST = 5.0
 """Standstill [s] without which no line is told. Derived: hum at a third of the noise is then seen by 12 standard
 deviations at 500 Hz, and two frequencies are told apart to 0.2 Hz."""

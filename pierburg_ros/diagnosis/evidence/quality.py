@@ -103,10 +103,8 @@ def refuse_unusable(recordings: Sequence[Recording], scales: Scales) -> None:
             )
 
 
-def data_quality(
-    runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()
-) -> DataQuality:
-    """Sampling, saturation, stops and excitation of all `runs`, and what is remarked of dirty ones.
+def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
+    """Sampling, saturation, stops and excitation of all `runs`, and the `remarks` on dirty ones.
 
     `noise` is its standard deviation, measured unit.
     """
@@ -123,7 +121,8 @@ def data_quality(
         stops_touched=[end for end in ("closed", "open") if _touched(motions, end)],
         resolution=_resolution(runs),
         excited=excited(motions),
-        limits=[*remarks, *(limit.finding for limit in limits_of(runs, actuator, noise))],
+        limits=[limit.finding for limit in limits_of(runs, actuator, noise)],
+        dirt=list(remarks),
     )
 
 

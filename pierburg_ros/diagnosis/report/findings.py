@@ -87,7 +87,7 @@ def document(
         excluded=excluded(data),
         cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
-        data_quality=quality.data_quality(data.runs, actuator, data.noise, data.remarks),
+        data_quality=quality.data_quality(data.runs, actuator, data.noise, (*data.warnings, *data.remarks)),
         advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
     )
 

@@ -31,13 +31,13 @@ def supply(time: Signal, random: Random) -> Disturbance:
 
 
 def hand(time: Signal, random: Random) -> Disturbance:
-    """A hand that takes the lever for five seconds, pushes, gives way and trembles."""
+    """A hand that takes the lever for five seconds, pulls to and fro, and trembles."""
     since = time - _start(time, random)
-    size = random.uniform(*FORCE) * random.choice([-1.0, 1.0])
-    pushing = 1.0 + 0.5 * np.sin(2.0 * np.pi * random.uniform(0.4, 1.2) * since + random.uniform(0.0, 6.0))
-    pushing += 0.15 * np.sin(2.0 * np.pi * random.uniform(4.0, 9.0) * since)
+    size = random.uniform(*FORCE)
+    pulling = np.sin(2.0 * np.pi * random.uniform(0.3, 1.0) * since + random.uniform(0.0, 6.0))
+    pulling += 0.3 * random.uniform(-1.0, 1.0) + 0.15 * np.sin(2.0 * np.pi * random.uniform(4.0, 9.0) * since)
     grip = np.clip(np.minimum(since, WINDOW - since) / 0.3, 0.0, 1.0)
-    return Disturbance(torque=size * pushing * grip)
+    return Disturbance(torque=size * pulling * grip)
 
 
 def open_bridge(time: Signal, random: Random) -> Disturbance:

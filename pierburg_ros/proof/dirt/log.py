@@ -29,9 +29,9 @@ class Messages:
         """Those of `which`, shape (messages,); their numbers tell that others are missing."""
         return Messages(self.time[which], self.values[which], self.number[which])
 
-    def renumbered(self) -> Messages:
-        """The same, numbered by who writes the file: it does not tell what is missing."""
-        return replace(self, number=np.arange(self.time.size))
+    def unnumbered(self) -> Messages:
+        """The same without numbers, as many writers leave them."""
+        return replace(self, number=np.zeros(self.time.size, dtype=np.int64))
 
 
 @dataclass(frozen=True)

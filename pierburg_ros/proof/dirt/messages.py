@@ -19,9 +19,9 @@ def lost_messages(log: Log, random: Random) -> Log:
 
 
 def lost_rows(log: Log, random: Random) -> Log:
-    """One row in ten, Hall voltage and duty, is missing, and nothing tells."""
+    """One row in ten, Hall voltage and duty, is missing, and no number tells."""
     kept = random.random(log.hall.time.size) >= 0.1
-    return Log(log.hall.kept(kept).renumbered(), log.duty.kept(kept).renumbered())
+    return Log(log.hall.kept(kept).unnumbered(), log.duty.kept(kept).unnumbered())
 
 
 def jitter(log: Log, random: Random) -> Log:
@@ -41,7 +41,7 @@ def begins_in_motion(log: Log, random: Random) -> Log:
     span = max(int(0.05 / np.median(np.diff(log.hall.time))), 1)
     fast = int(np.argmax(np.abs(third[span:] - third[:-span]))) + span // 2
     start = log.hall.time[fast]
-    cut = (each.kept(each.time >= start).renumbered() for each in (log.hall, log.duty))
+    cut = (each.kept(each.time >= start).unnumbered() for each in (log.hall, log.duty))
     return Log(*(replace(each, time=each.time - start) for each in cut))
 
 
