@@ -27,6 +27,9 @@ def prove(
     jobs: JobsOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
+    dirty: Annotated[
+        bool, typer.Option("--dirty", help="Spoil the recordings, each trial by one kind of dirt.")
+    ] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
 ) -> object:
     """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
@@ -35,7 +38,7 @@ def prove(
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
     reports what is done; called again, it goes on.
     """
-    plan = planned(seed, trials, only or [], over_graph)
+    plan = planned(seed, trials, only or [], over_graph, dirty)
     if over_graph:
         require_ros()
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -148,6 +148,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     return f"{warning} {text}"
 
 
+def remarked(remarks: Sequence[str], text: str) -> str:
+    """The summary after what is remarked of dirty recordings."""
+    return " ".join([*remarks, text])
+
+
 def provisional(text: str, stopped: bool) -> str:
     """The summary, marked where the search had to end before it was done."""
     return f"Stopped before all was tried; this is the best verdict yet. {text}" if stopped else text
