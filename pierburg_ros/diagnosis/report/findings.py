@@ -287,7 +287,7 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
     """What is left as a torque over angle and velocity, and over time."""
     if shape is None or shape.model.residual_torque is None:
         return None
-    grid = {key: np.asarray(shape.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    grid = {key: np.asarray(values).tolist() for key, values in shape.model.residual_torque.items()}
     time, torque = shape.over_time
     return ResidualTorque(
         **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())
