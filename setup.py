@@ -62,6 +62,8 @@ TEST_TOOLS = [
     "pandas",
 ]
 
+DOCS = ["sphinx", "myst-parser", "furo"]
+
 setup(
     name=PACKAGE,
     version=MANIFEST.findtext("version"),
@@ -115,6 +117,7 @@ setup(
     extras_require={
         "ros": ROS_WHEELS,
         "test": TEST_TOOLS,
+        "docs": DOCS,
         "tables": ["pandas"],
         "mujoco": MUJOCO,
         "rerun": ["rerun-sdk>=0.24"],

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError, printable
+from pierburg_ros.errors import InputError, near, printable
 from pierburg_ros.recording.columns import FORM, Columns
 from pierburg_ros.recording.file_times import FileTimes
 from pierburg_ros.recording.formats import format_of
@@ -17,7 +17,7 @@ from pierburg_ros.recording.formats.csv_table import MOST_CELLS
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.signal_map import SignalMap, TimeSource
-from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order, near
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order
 from pierburg_ros.recording.topics import nothing
 
 
