@@ -105,7 +105,7 @@ setup(
         "rosbags>=0.11.9",
         "plotly>=6.0",
         "matplotlib>=3.8",
-        "rich>=13.7",
+        "rich>=13.8",
         "typer>=0.26",
         "pydantic>=2.6",
         "jinja2>=3.1.2",
