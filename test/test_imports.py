@@ -45,10 +45,12 @@ FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "diagnosis": {
         "schema": set(),
+        "cleaning": set(),
         "evidence": {"schema"},
         "search": {"evidence"},
         "location": {"schema", "evidence"},
         "remainder": {"evidence", "search"},
+        "disturbance": {"search", "remainder"},
         "limits": {"search"},
         "verdict": {"schema", "search", "remainder"},
         "result": {"schema"},
@@ -72,7 +74,7 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set()},
+    "proof": {"formulation": set(), "dirt": set()},
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},

@@ -36,7 +36,7 @@ def with_common(function: Callable[..., Any]) -> Callable[..., None]:
     """`function` as a command with the common options, which prints the document that it returns if asked to."""
     signature = inspect.signature(function, eval_str=True)
     own = [shortened(parameter) for parameter in signature.parameters.values()]
-    extra = {"quiet": QUIET, "as_json": JSON}
+    extra: dict[str, Any] = {"quiet": QUIET, "as_json": JSON}
     has_output = "output" in signature.parameters
     if not has_output:
         extra = {"output": DOCUMENT, **extra}
