@@ -101,12 +101,6 @@ def test_a_command_within_a_sentence_is_understood(page, text):
     understood(text.split())
 
 
-def test_a_block_of_code_says_its_language():
-    known = {"sh", "console", "text", "python", "yaml", "csv", "json", "{eval-rst}"}
-    for page in pages():
-        assert {block.language for block in blocks(page)} <= known, page
-
-
 def understood(words: list[str]) -> None:
     """Whether the command line has the command and the options of `words`; of a node, whether it has the parameters."""
     name, given = words[1], words[2:]
