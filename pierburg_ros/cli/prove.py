@@ -1,25 +1,24 @@
-"""`pierburg prove`: seeded blind trials of the diagnosis."""
+"""`pierburg prove`: seeded blind trials of the diagnosis, or known effects put into real recordings."""
 
 from __future__ import annotations
 
 import signal
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import Progress
 from rich.table import Table
 
+from pierburg_ros.cli import prove_real
 from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
+from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.terminal import progress_bar, terminal
+from pierburg_ros.errors import InputError
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import planned
@@ -28,32 +27,54 @@ from pierburg_ros.proof.trial_run import DIAGNOSE
 
 def prove(
     output: Annotated[Path, typer.Option(help="Folder for trials and results; an earlier run there goes on.")],
-    trials: Annotated[int | None, typer.Option(min=1, help="Trials of each kind in place of the full run.")] = None,
+    real: RealOption = None,
+    trials: Annotated[
+        int | None, typer.Option(min=1, help="Trials of each kind; with --real, on so many of the recordings.")
+    ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
     jobs: JobsOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
+    level: LevelOption = None,
+    budget: BudgetOption = None,
+    actuator: ActuatorOption = None,
+    model: ModelOption = None,
+    signals: SignalsOption = None,
+    topic: TopicOption = None,
+    time: TimeOption = None,
 ) -> None:
     """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
     reports what is done; called again, it goes on.
+
+    With --real, effects are put into your own recordings by changing their channels where that is exact; the diagnosis
+    has to find them beside all that is really there, against the model of your other recordings. Writes results.jsonl
+    and proof-real.md. For example: pierburg prove --real bench/ --actuator my_actuator.yaml --output proof
     """
+    if real is not None:
+        machine = prove_real.machine(real, actuator, model, signals, topic, time)
+        prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
+        return
+    refuse_alone(
+        {
+            "--level": level,
+            "--budget": budget,
+            "--actuator": actuator,
+            "--model": model,
+            "--signals": signals,
+            "--topic": topic,
+            "--time": time,
+        }
+    )
     plan = planned(seed, trials, only or [], over_graph)
     if over_graph:
         require_ros()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=terminal(stderr=True),
-    ) as progress:
+    with progress_bar() as progress:
         reporter = Reporter(progress, plan.size)
         command = None if generate_only else DIAGNOSE
         results = run.prove(output, plan, workers=jobs, command=command, report=reporter)
@@ -63,6 +84,13 @@ def prove(
     done = document.Run(results, plan)
     document.write(done, output, docs)
     terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
+
+
+def refuse_alone(given: Mapping[str, Any]) -> None:
+    """Refuse options that say nothing without recordings."""
+    for option, value in given.items():
+        if value is not None:
+            raise InputError(f"Found {option} without --real, expected the folder of recordings that it is about.")
 
 
 class Reporter:

@@ -5,6 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.text import Text
 
 from pierburg_ros.errors import printable
@@ -21,3 +29,15 @@ class Terminal(Console):
 def terminal(stderr: bool = False) -> Terminal:
     """The standard output, or the standard error."""
     return Terminal(stderr=stderr, markup=False, emoji=False, highlight=False)
+
+
+def progress_bar() -> Progress:
+    """A bar on stderr that counts pieces of work and says how they stand."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    return Progress(*columns, console=terminal(stderr=True))

@@ -1,0 +1,109 @@
+"""The part of `pierburg prove` that works on real recordings."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.progress import Progress
+from rich.table import Table
+
+from pierburg_ros.cli.models import chosen_or_valve
+from pierburg_ros.cli.recordings import topics_of
+from pierburg_ros.cli.terminal import progress_bar, terminal
+from pierburg_ros.errors import InputError
+from pierburg_ros.library.diagnosing import USUAL_BUDGET
+from pierburg_ros.library.reading import read
+from pierburg_ros.proof.real import document, run
+from pierburg_ros.proof.real.document import Run, answered, headline
+from pierburg_ros.proof.real.machine import Machine, machine_in
+from pierburg_ros.proof.real.strengths import LEVELS
+
+RealOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FOLDER", help="Put known effects into the real recordings of one machine in this folder."),
+]
+LevelOption = Annotated[
+    list[str] | None,
+    typer.Option(help=f"With --real: only this strength, one of {', '.join(LEVELS)}; may be repeated."),
+]
+BudgetOption = Annotated[
+    float | None,
+    typer.Option(
+        min=1.0,
+        show_default=f"{USUAL_BUDGET:g}",
+        help="With --real: seconds of an idle machine for each recording that is diagnosed.",
+    ),
+]
+
+
+def machine(
+    folder: Path,
+    actuator: str | None,
+    model: Path | None,
+    signals: Path | None,
+    topic: Sequence[str] | None,
+    time: str | None,
+) -> Machine:
+    """The machine whose recordings lie in `folder`, read as the other commands read them; says what is left out."""
+    described = chosen_or_valve(model, actuator)
+    topics = topics_of(topic)
+    found = machine_in(
+        folder,
+        described,
+        lambda path: read(path, time=time, topics=topics, signals=signals, actuator=described.actuator),
+        known=model is not None,
+    )
+    for why in found.left_out:
+        terminal(stderr=True).print(f"Left out: {why}", style="yellow", soft_wrap=True)
+    return found
+
+
+def prove(
+    machine: Machine,
+    output: Path,
+    only: Sequence[str],
+    levels: Sequence[str],
+    most: int | None,
+    jobs: int | None,
+    budget: float | None,
+    docs: Path | None,
+) -> None:
+    """Conduct the trials and write what they came to."""
+    plan = run.planned(machine, only, levels, most)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with progress_bar() as progress:
+        reporter = Reporter(progress, len(plan.trials))
+        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, report=reporter)
+    if not results:
+        raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
+    done = Run(results, plan)
+    document.write(done, output, docs)
+    terminal().print(summary(done), f"Results in {output}: proof-real.md, results.jsonl")
+
+
+class Reporter:
+    """Shows how far a run is, and what was answered last."""
+
+    def __init__(self, progress: Progress, total: int) -> None:
+        self.progress = progress
+        self.task = progress.add_task("the model of each half", total=total)
+        self.description = "the model of each half"
+
+    def __call__(self, done: int, total: int, last: dict[str, Any] | None) -> None:
+        if last is not None:
+            self.description = f"{last['name']}: {answered(last)}"
+        self.progress.update(self.task, completed=done, total=total, description=self.description)
+
+
+def summary(done: Run) -> Table:
+    """The headline figures."""
+    table = Table(title=f"Effects put into real recordings, n = {len(done.results)}", title_justify="left")
+    table.add_column("figure")
+    table.add_column("count (95 % Wilson interval)")
+    for name, share in headline(done).items():
+        table.add_row(name, str(share))
+    return table

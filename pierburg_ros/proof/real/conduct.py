@@ -1,0 +1,163 @@
+"""One trial on a real recording, from what is put in to its score; each stage leaves files in the trial's folder.
+
+recording.mcap, model.yaml  what the diagnosis gets: the changed recording, and the model of the other half
+truth.json                  sealed with them by seal.json before the diagnosis starts
+diagnosis/                  what the diagnosis said
+result.json                 the score, and the version of the sources it belongs to
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pierburg_ros.effects.put_in import CannotPutIn
+from pierburg_ros.errors import InputError
+from pierburg_ros.plant import Model, read_model
+from pierburg_ros.proof.real.channels import with_effect, write
+from pierburg_ros.proof.real.machine import Machine
+from pierburg_ros.proof.real.score import Score, score
+from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
+from pierburg_ros.proof.real.trial import UNTOUCHED, Trial, Truth, added
+from pierburg_ros.proof.seal import opened, seal
+from pierburg_ros.proof.trial_run import DIAGNOSE, RESULT, diagnose, finite, result
+from pierburg_ros.recording import Recording, read_recording
+
+RECORDING, MODEL, ANSWER = "recording.mcap", "model.yaml", "diagnosis/diagnosis.json"
+NOTHING = {"verdict": "none", "effects": []}
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where the files of a run lie, and how it diagnoses: the `command`, with so many seconds of an idle machine."""
+
+    output: Path
+    version: str
+    budget: float
+    command: Sequence[str] = DIAGNOSE
+
+    def asked(self, recordings: int = 1) -> tuple[str, ...]:
+        """The command with the model that it is to hold so many recordings against."""
+        return (*self.command, "--model", MODEL, "--budget", f"{self.budget * recordings:g}")
+
+    def source(self, name: str) -> Path:
+        """The recording called `name`, as it was taken up."""
+        return self.output / "recordings" / f"{name}.mcap"
+
+    def recording(self, name: str) -> Recording:
+        """The same, read."""
+        return read_recording(self.source(name))
+
+    def folder(self, trial: Trial) -> Path:
+        """Where a trial's files lie."""
+        return self.output / "trials" / trial.name
+
+    def half(self, half: int) -> Path:
+        """Where the diagnosis of the recordings that are not in a half lies: its model is what the half is held to."""
+        return self.output / f"model-for-half-{half + 1}"
+
+    def model(self, half: int) -> Model:
+        """The model that recordings of a half are held against: diagnosed from the others, or else given."""
+        diagnosed = self.half(half) / "diagnosis" / MODEL
+        return read_model(diagnosed if diagnosed.exists() else self.output / MODEL)
+
+    def untouched(self, trial: Trial) -> dict[str, Any]:
+        """The diagnosis of a trial's recording as it is."""
+        answer: dict[str, Any] = json.loads(
+            (self.folder(replace(trial, kind=UNTOUCHED, level="plain")) / ANSWER).read_text()
+        )
+        return answer
+
+
+def take_up(machine: Machine, output: Path) -> None:
+    """Write the machine's recordings and its described model into a run's folder, in one form."""
+    (output / "recordings").mkdir(parents=True, exist_ok=True)
+    for name, recording in machine.recordings.items():
+        write(output / "recordings" / f"{name}.mcap", recording)
+    machine.described.write(output / MODEL)
+
+
+def diagnose_others(asked: tuple[int, Sequence[str]], bench: Bench) -> dict[str, Any]:
+    """Diagnose the recordings that are not in a half, unless that is done; their model then stands for the half.
+
+    `asked` are the half and the names of the recordings; each has the seconds of one trial.
+    """
+    half, names = asked
+    folder = bench.half(half)
+    done = result(folder, bench.version)
+    if done is not None:
+        return done
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    given = {MODEL: MODEL, **{f"{name}.mcap": f"{name}.mcap" for name in names}}
+    for file, source in ((MODEL, bench.output / MODEL), *((f"{name}.mcap", bench.source(name)) for name in names)):
+        shutil.copy(source, folder / file)
+    seconds = diagnose(folder, bench.asked(len(names)), given)
+    answer = json.loads((folder / ANSWER).read_text())
+    effects = [effect["id"] for effect in answer["effects"]]
+    label = {"recordings": list(names), "verdict": answer["verdict"], "effects": effects, "seconds": seconds}
+    return keep({**label, "sources": bench.version}, folder)
+
+
+def keep(label: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Write a result into `folder`, whole or not at all."""
+    kept: dict[str, Any] = finite(label)
+    temporary = folder / f".{RESULT}"
+    temporary.write_text(json.dumps(kept, indent=1))
+    temporary.replace(folder / RESULT)
+    return kept
+
+
+def prepare(trial: Trial, bench: Bench) -> bool:
+    """Put in what the trial says and seal it; whether there is such a trial: a level or an exact way may be missing."""
+    model, recording, folder = bench.model(trial.half), bench.recording(trial.recording), bench.folder(trial)
+    told, truth = model, Truth(trial)
+    if trial.is_effect:
+        limits = bench.untouched(trial)["ruled_out"]
+        size = strength(trial.kind, trial.level, model, limits)
+        if size is None:
+            return False
+        values = values_at(trial.kind, size)
+        try:
+            recording = with_effect(recording, trial.kind, values, model)
+        except CannotPutIn:
+            return False
+        truth = Truth(trial, size, added(trial.kind, values, model), strength(trial.kind, "limit", model, limits))
+    elif trial.kind != UNTOUCHED:
+        if trial.level not in WRONG:
+            return False
+        true, factor = model.values[trial.kind], WRONG[trial.level]
+        told, truth = model.with_values({trial.kind: factor * true}), Truth(trial, factor, {trial.kind: true})
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    write(folder / RECORDING, recording)
+    told.write(folder / MODEL)
+    seal(folder, finite(truth.label()), (RECORDING, MODEL))
+    return True
+
+
+def conduct(trial: Trial, bench: Bench) -> dict[str, Any] | None:
+    """Conduct a trial unless it is done, and give its result; None where it does not exist."""
+    folder = bench.folder(trial)
+    done = result(folder, bench.version)
+    if done is not None:
+        return done
+    if not prepare(trial, bench):
+        return None
+    try:
+        seconds = diagnose(folder, bench.asked(), {RECORDING: RECORDING, MODEL: MODEL})
+        scored = replace(judge(trial, bench), seconds=seconds)
+    except InputError as problem:
+        scored = replace(score(opened(folder), NOTHING, NOTHING), failure=str(problem))
+    return keep({**scored.label(), "sources": bench.version}, folder)
+
+
+def judge(trial: Trial, bench: Bench) -> Score:
+    """Open the seal and score the diagnosis that lies in the trial's folder."""
+    folder = bench.folder(trial)
+    diagnosis = json.loads((folder / ANSWER).read_text())
+    return score(opened(folder), diagnosis, diagnosis if trial.kind == UNTOUCHED else bench.untouched(trial))
