@@ -71,7 +71,10 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set()},
+    "proof": {
+        "formulation": set(),
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+    },
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},

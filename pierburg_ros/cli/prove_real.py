@@ -28,7 +28,7 @@ RealOption = Annotated[
 ]
 LevelOption = Annotated[
     list[str] | None,
-    typer.Option(help=f"With --real: only this strength, one of {', '.join(LEVELS)}; may be repeated."),
+    typer.Option(help=f"With --real: only this strength ({', '.join(LEVELS)}); may be repeated."),
 ]
 BudgetOption = Annotated[
     float | None,

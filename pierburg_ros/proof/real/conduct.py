@@ -22,7 +22,7 @@ from pierburg_ros.proof.real.channels import with_effect, write
 from pierburg_ros.proof.real.machine import Machine
 from pierburg_ros.proof.real.score import Score, score
 from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
-from pierburg_ros.proof.real.trial import UNTOUCHED, Trial, Truth, added
+from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial, Truth, added
 from pierburg_ros.proof.seal import opened, seal
 from pierburg_ros.proof.trial_run import DIAGNOSE, RESULT, diagnose, finite, result
 from pierburg_ros.recording import Recording, read_recording
@@ -113,31 +113,44 @@ def keep(label: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def prepare(trial: Trial, bench: Bench) -> bool:
-    """Put in what the trial says and seal it; whether there is such a trial: a level or an exact way may be missing."""
-    model, recording, folder = bench.model(trial.half), bench.recording(trial.recording), bench.folder(trial)
-    told, truth = model, Truth(trial)
-    if trial.is_effect:
-        limits = bench.untouched(trial)["ruled_out"]
-        size = strength(trial.kind, trial.level, model, limits)
-        if size is None:
-            return False
-        values = values_at(trial.kind, size)
-        try:
-            recording = with_effect(recording, trial.kind, values, model)
-        except CannotPutIn:
-            return False
-        truth = Truth(trial, size, added(trial.kind, values, model), strength(trial.kind, "limit", model, limits))
-    elif trial.kind != UNTOUCHED:
-        if trial.level not in WRONG:
-            return False
-        true, factor = model.values[trial.kind], WRONG[trial.level]
-        told, truth = model.with_values({trial.kind: factor * true}), Truth(trial, factor, {trial.kind: true})
+    """Change what the trial says and seal it; whether there is such a trial: a level or an exact way may be missing."""
+    try:
+        recording, model, truth = changed(trial, bench)
+    except CannotPutIn:
+        return False
+    folder = bench.folder(trial)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     write(folder / RECORDING, recording)
-    told.write(folder / MODEL)
+    model.write(folder / MODEL)
     seal(folder, finite(truth.label()), (RECORDING, MODEL))
     return True
+
+
+def changed(trial: Trial, bench: Bench) -> tuple[Recording, Model, Truth]:
+    """The recording and the model of a trial, and what is true of them; CannotPutIn where there is no such trial."""
+    model, recording = bench.model(trial.half), bench.recording(trial.recording)
+    if trial.kind == UNTOUCHED:
+        return recording, model, Truth(trial)
+    if trial.kind == WITHHELD:
+        if recording.supply_voltage is None or trial.level != "plain":
+            raise CannotPutIn("no supply voltage was recorded, and it is withheld whole or not at all")
+        return replace(recording, supply_voltage=None), model, Truth(trial)
+    if not trial.is_effect:
+        if trial.level not in WRONG:
+            raise CannotPutIn(f"a number is not told wrong at the level {trial.level}")
+        true, factor = model.values[trial.kind], WRONG[trial.level]
+        return recording, model.with_values({trial.kind: factor * true}), Truth(trial, factor, {trial.kind: true})
+    ruled_out = bench.untouched(trial)["ruled_out"]
+    size, limit = (strength(trial.kind, level, model, ruled_out) for level in (trial.level, "limit"))
+    if size is None:
+        raise CannotPutIn(f"the untouched recording gives no level {trial.level}")
+    values = values_at(trial.kind, size)
+    return (
+        with_effect(recording, trial.kind, values, model),
+        model,
+        Truth(trial, size, added(trial.kind, values, model), limit),
+    )
 
 
 def conduct(trial: Trial, bench: Bench) -> dict[str, Any] | None:

@@ -15,7 +15,7 @@ from pierburg_ros.proof.document import inserted, table
 from pierburg_ros.proof.intervals import Share
 from pierburg_ros.proof.real.run import Plan
 from pierburg_ros.proof.real.strengths import LEVELS
-from pierburg_ros.proof.real.trial import UNTOUCHED
+from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD
 from pierburg_ros.proof.tally import share
 
 Result = Mapping[str, Any]
@@ -33,16 +33,12 @@ class Run:
 
     def of(self, level: str, effects: bool = True) -> list[Result]:
         """The trials of a level in which an effect was put in, or else a number of the description was wrong."""
-        return [
-            r
-            for r in self.results
-            if r["kind"] != UNTOUCHED and r["level"] == level and effects == (r["kind"] in EFFECT)
-        ]
+        changed = [result for result in self.results if result["true"] is not None and result["level"] == level]
+        return [result for result in changed if effects == (result["kind"] in EFFECT)]
 
-    @property
-    def untouched(self) -> list[Result]:
-        """The trials of recordings as they are."""
-        return [result for result in self.results if result["kind"] == UNTOUCHED]
+    def kind(self, kind: str) -> list[Result]:
+        """The trials of a kind."""
+        return [result for result in self.results if result["kind"] == kind]
 
 
 def is_named(result: Result) -> bool | None:
@@ -72,7 +68,8 @@ def headline(run: Run) -> dict[str, Share]:
         "given another effect beside what the untouched recording is given": share(plain, has_more),
         "Number of the description 1.3 times too high: its drift named": share(wrong, is_named),
         "of these, value within 25 % of that in the model of the other recordings": share(wrong, has_value),
-        "Untouched recordings given one more effect (false alarms)": share(run.untouched, has_more),
+        "Untouched recordings given one more effect (false alarms)": share(run.kind(UNTOUCHED), has_more),
+        "Logged supply voltage withheld: given another effect": share(run.kind(WITHHELD), has_more),
         "Refused as a fault of the signals": share(run.results, lambda r: bool(r["refused"])),
         "Stopped before all was tried": share(run.results, lambda r: r["stopped"]),
         "No answer at all": share(run.results, lambda r: r["failure"] is not None),
@@ -84,7 +81,7 @@ def by_kind(run: Run) -> str:
     rows = []
     for kind in run.plan.kinds:
         for level in LEVELS:
-            of = [r for r in run.results if (r["kind"], r["level"]) == (kind, level) and kind != UNTOUCHED]
+            of = [result for result in run.kind(kind) if result["level"] == level and result["true"] is not None]
             if of:
                 strengths = between([r["strength"] for r in of]) + ("" if kind in EFFECT else " times")
                 rows.append(

@@ -44,7 +44,8 @@ class Machine:
 def machine_in(folder: Path, described: Model, read: Callable[[Path], Recording], known: bool = False) -> Machine:
     """The machine whose recordings lie in `folder`, each read by `read`.
 
-    InputError where there are not two of them, or none for a model that is `known`. A recording that lacks messages is left out: written again, it would no longer tell that it does.
+    InputError where there are not two of them, or none for a model that is `known`. A recording that lacks messages is
+    left out: written again, it would no longer tell that it does.
     """
     recordings: dict[str, Recording] = {}
     left_out: list[str] = []
@@ -57,10 +58,11 @@ def machine_in(folder: Path, described: Model, read: Callable[[Path], Recording]
         else:
             recordings[path.stem] = recording
     if len(recordings) < (1 if known else HALVES):
+        told = f" ({'; '.join(left_out)})" if left_out else ""
         raise InputError(
-            f"{folder} holds {len(recordings)} whole recordings ({'; '.join(left_out) or 'none was left out'}), expected"
-            " two or more of one machine, since one half is held against the model of the other. Add recordings, or"
-            " name a model diagnosed from others with --model."
+            f"{folder} holds {len(recordings)} whole recordings{told}, expected two or more of one machine, since one"
+            " half is held against the model of the other. Add recordings, or name a model diagnosed from others with"
+            " --model."
         )
     return Machine(described, recordings, known, tuple(left_out))
 

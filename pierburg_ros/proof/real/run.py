@@ -15,7 +15,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.proof.real.conduct import Bench, conduct, diagnose_others, take_up
 from pierburg_ros.proof.real.machine import Machine
 from pierburg_ros.proof.real.strengths import LEVELS, possible, tellable
-from pierburg_ros.proof.real.trial import UNTOUCHED, Trial
+from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial
 from pierburg_ros.proof.run import RUN, ended, finish_when_interrupted
 from pierburg_ros.proof.trial_run import DIAGNOSE, result, source_version
 
@@ -58,7 +58,8 @@ class Plan:
 def planned(machine: Machine, only: Sequence[str] = (), levels: Sequence[str] = (), most: int | None = None) -> Plan:
     """All that can be put into the recordings of `machine`, or `only` some kinds or `levels` of it."""
     actuator = machine.described.actuator
-    kinds = (UNTOUCHED, *possible(actuator), *tellable(actuator))
+    withheld = (WITHHELD,) if actuator.drive == "voltage" else ()
+    kinds = (UNTOUCHED, *possible(actuator), *tellable(actuator), *withheld)
     for what, asked, known in (("kind", only, kinds), ("level", levels, LEVELS)):
         for each in asked:
             if each not in known:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from pierburg_ros.effects import EFFECT
+from pierburg_ros.proof.real.trial import UNTOUCHED
 from pierburg_ros.proof.score import alternatives
 
 VALUE_TOLERANCE = 0.25
@@ -99,7 +100,7 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
         true=expected,
         found=found,
         within=within,
-        beside=tuple(sorted(effects - before - {kind})) if true else tuple(sorted(effects)),
+        beside=tuple(sorted(effects - {kind} - (set() if kind == UNTOUCHED else before))),
         refused=tuple(f"{fault['signal']}: {fault['what']}" for fault in diagnosis.get("input_faults", [])),
         stopped=bool(diagnosis.get("stopped", False)),
     )

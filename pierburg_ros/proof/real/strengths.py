@@ -22,7 +22,7 @@ def possible(actuator: Actuator) -> tuple[str, ...]:
 
 
 def tellable(actuator: Actuator) -> tuple[str, ...]:
-    """Names of the base parameters that a description may have wrong and a diagnosis may correct, the sensor's aside."""
+    """Names of the base parameters that a description may have wrong and a diagnosis corrects, the sensor's aside."""
     return tuple(name for name in actuator.free if "." not in name and not name.startswith("sensor_"))
 
 
@@ -36,7 +36,8 @@ def strength(effect: str, level: str, model: Model, ruled_out: Sequence[Mapping[
     plain = declared.expected(model.scales)[1]
     if level == "plain":
         return plain
-    limit = next((item["below"] for item in ruled_out if item["id"] == effect and item["below"]), None)
+    own = [item for item in ruled_out if (item["id"], item["parameter"]) == (effect, declared.name)]
+    limit = own[0]["below"] if own else None
     if limit is None:
         return plain / 2.0 if level == "half" and EFFECT[effect].rounds else None
     if level == "between":

@@ -10,13 +10,15 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
 
 UNTOUCHED = "untouched"
+WITHHELD = "withheld_supply"
+"""The logged supply voltage is left out. It wanders as it did, which no effect is: none may be named for it."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One real recording, and what is changed: an effect, a number of the description, or nothing.
+    """One real recording, and what is changed: an effect, a number of the description, what is logged, or nothing.
 
-    `kind` is the effect's id, the base parameter's name, or `UNTOUCHED`.
+    `kind` is the effect's id, the base parameter's name, `WITHHELD` or `UNTOUCHED`.
     """
 
     recording: str
