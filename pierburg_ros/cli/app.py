@@ -51,7 +51,7 @@ COMMANDS = {
     "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
     "actuator": Command("Describe an actuator; say what is implausible about a description."),
     "recover": Command("Make a cut recording whole for every reader."),
-    "prove": Command("Seeded blind trials of the diagnosis."),
+    "prove": Command("Seeded blind trials of the diagnosis; known effects put into your own recordings."),
     "tune": Command("PIFLC gains and sets for a stated goal over a set of plants."),
 }
 

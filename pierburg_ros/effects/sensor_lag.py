@@ -16,7 +16,7 @@ def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
     """The measured samples behind a first-order lag that begins at rest on the first one.
 
     Exact for every drive and sensor: the lag acts after all that moves, on what was measured. Between two samples the
-    signal is a straight line; the noise of the recording lies before the lag, and is smoothed with it.
+    signal is a straight line. Noise that should come after the lag is smoothed with it.
     """
     time, measured = channels.measured.time, channels.measured.values
     lagged = np.array(measured)

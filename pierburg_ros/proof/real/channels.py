@@ -15,6 +15,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording, write_recording
 from pierburg_ros.recording.formats import cdr
+from pierburg_ros.recording.noise import noise_of
 from pierburg_ros.recording.write import MEASURED
 from pierburg_ros.recording.write import Signal as Written
 
@@ -22,8 +23,8 @@ from pierburg_ros.recording.write import Signal as Written
 def with_effect(recording: Recording, effect: str, values: dict[str, float], model: Model) -> Recording:
     """`recording` of the machine that `model` describes with an effect of these `values`; CannotPutIn where not exact.
 
-    What the sensor's effects make of the samples is given in the steps of the recording's own converter, as it comes
-    after them; a coarser converter takes its place.
+    What the sensor's effects make of the samples has the noise and the steps of the recording, which come after them; a
+    coarser converter takes the place of its own.
     """
     declared = EFFECT[effect]
     assert declared.put_in is not None
@@ -31,13 +32,13 @@ def with_effect(recording: Recording, effect: str, values: dict[str, float], mod
     after = declared.put_in(before, values)
     measured = after.measured.values
     if after.measured is not before.measured and declared.rounds is None:
-        measured = in_steps(measured, recording.measured)
-    supply = recording.supply_voltage
+        measured = logged(recording.time, measured, recording.measured)
+    supply = after.supply_voltage
     return replace(
         recording,
         measured=measured,
         command=Channel(after.command.time, after.command.values),
-        supply_voltage=supply and after.supply_voltage and Channel(supply.time, after.supply_voltage.values),
+        supply_voltage=None if supply is None else Channel(supply.time, supply.values),
     )
 
 
@@ -50,17 +51,24 @@ def channels_of(recording: Recording, model: Model) -> Channels:
     return Channels(
         Series(recording.time, recording.measured),
         Series(recording.command.time, recording.command.values),
-        supply and Series(supply.time, supply.values),
+        None if supply is None else Series(supply.time, supply.values),
         zero,
         per_radian,
         model.actuator.sensor_span,
     )
 
 
-def in_steps(values: Signal, original: Signal) -> Signal:
-    """`values` on the grid on which all of `original` lie; unchanged where they lie on none."""
+def logged(time: Signal, values: Signal, original: Signal) -> Signal:
+    """`values` of a changed sensor as the recording's own converter gives them, shape (samples,).
+
+    Noise and steps come after the sensor. White noise that a lag or a play has taken from the `original` is added anew,
+    always the same; and all is rounded to the grid on which the original lies, if it lies on one.
+    """
     step = grid(original)
-    return original[0] + step * np.rint((values - original[0]) / step) if step else values
+    own, left = (max(noise_of(time, each) ** 2 - step**2 / 12.0, 0.0) for each in (original, values))
+    noise = np.sqrt(max(own - left, 0.0)) * np.random.default_rng(values.size).standard_normal(values.size)
+    noisy: Signal = values + noise
+    return noisy if step == 0.0 else np.asarray(original[0] + step * np.rint((noisy - original[0]) / step))
 
 
 def write(path: Path, recording: Recording) -> None:

@@ -9,7 +9,7 @@ import pytest
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
-from pierburg_ros.proof.real.channels import channels_of, in_steps, with_effect, write
+from pierburg_ros.proof.real.channels import channels_of, logged, with_effect, write
 from pierburg_ros.proof.real.machine import Machine, machine_in
 from pierburg_ros.proof.real.strengths import possible, strength, tellable, values_at
 from pierburg_ros.proof.real.trial import added
@@ -50,8 +50,16 @@ def test_what_a_sensor_effect_gives_is_in_steps_of_the_recordings_converter():
     lagged = with_effect(recorded(), "sensor_lag", {"time_constant": 0.03}, SERVO).measured
     assert lagged / 0.001 == pytest.approx(np.round(lagged / 0.001), abs=1e-6)
     assert np.max(np.abs(lagged - recorded().measured)) > 0.02
-    smooth = np.sin(TIME)
-    assert in_steps(lagged, smooth) is lagged
+
+
+def test_noise_comes_after_the_sensor():
+    """A lag leaves a fiftieth of white noise; what is logged has as much as was recorded, and the same each time."""
+    noise = 0.01 * np.random.default_rng(1).standard_normal(TIME.size)
+    original, lagged = np.sin(4.0 * TIME) + noise, np.sin(4.0 * TIME - 0.1) + 0.02 * noise
+    shown = logged(TIME, lagged, original)
+    assert np.std(shown - lagged) == pytest.approx(0.01, rel=0.15)
+    assert np.array_equal(shown, logged(TIME, lagged, original))
+    assert np.array_equal(logged(TIME, original, original), original)
 
 
 def test_a_coarser_converter_takes_the_place_of_the_recordings():
