@@ -56,6 +56,9 @@ def prove(
     and proof-real.md. For example: pierburg prove --real bench/ --actuator my_actuator.yaml --output proof
     """
     if real is not None:
+        for option, asked in (("--generate-only", generate_only), ("--over-graph", over_graph)):
+            if asked:
+                raise InputError(f"Found {option} with --real, and nothing is recorded there. Leave one of them out.")
         machine = prove_real.machine(real, actuator, model, signals, topic, time)
         prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
         return

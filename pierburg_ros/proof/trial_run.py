@@ -62,11 +62,13 @@ def prepare(trial: Trial, folder: Path) -> None:
     seal(folder, finite({**truth(trial), "visibility": visibility(trial, run).label()}))
 
 
-def diagnose(folder: Path, command: Sequence[str] = DIAGNOSE, given: Mapping[str, str] = GIVEN) -> float:
+def diagnose(
+    folder: Path, command: Sequence[str] = DIAGNOSE, given: Mapping[str, str] = GIVEN, longest: float = LONGEST
+) -> float:
     """Diagnose in a separate process what is `given`, which sees nothing else; gives the time it took [s].
 
     `given` is the file in `folder` of each file that the process finds: recordings to diagnose, and what the `command`
-    names.
+    names. After the `longest` time [s] it counts as failed.
     """
     with tempfile.TemporaryDirectory() as place:
         for name, file in given.items():
@@ -81,13 +83,13 @@ def diagnose(folder: Path, command: Sequence[str] = DIAGNOSE, given: Mapping[str
                 cwd=place,
                 capture_output=True,
                 text=True,
-                timeout=LONGEST,
+                timeout=longest,
                 env=environment,
                 start_new_session=True,
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            raise InputError(f"the diagnosis did not end within {LONGEST:.0f} s") from None
+            raise InputError(f"the diagnosis did not end within {longest:.0f} s") from None
         taken = time.perf_counter() - started
         if ended.returncode != 0:
             last = (ended.stderr.strip().splitlines() or ["no message"])[-1]

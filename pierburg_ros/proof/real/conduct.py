@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from pierburg_ros.deadline import SLOWEST
 from pierburg_ros.effects.put_in import CannotPutIn
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model, read_model
@@ -24,11 +25,11 @@ from pierburg_ros.proof.real.score import Score, score
 from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
 from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial, Truth, added
 from pierburg_ros.proof.seal import opened, seal
-from pierburg_ros.proof.trial_run import DIAGNOSE, RESULT, diagnose, finite, result
+from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST, RESULT, diagnose, finite, result
 from pierburg_ros.recording import Recording, read_recording
 
 RECORDING, MODEL, ANSWER = "recording.mcap", "model.yaml", "diagnosis/diagnosis.json"
-NOTHING = {"verdict": "none", "effects": []}
+NOTHING: dict[str, Any] = {"verdict": "none", "effects": [], "ruled_out": []}
 
 
 @dataclass(frozen=True)
@@ -40,9 +41,11 @@ class Bench:
     budget: float
     command: Sequence[str] = DIAGNOSE
 
-    def asked(self, recordings: int = 1) -> tuple[str, ...]:
-        """The command with the model that it is to hold so many recordings against."""
-        return (*self.command, "--model", MODEL, "--budget", f"{self.budget * recordings:g}")
+    def diagnose(self, folder: Path, recordings: Mapping[str, str]) -> float:
+        """Diagnose `recordings`, the file in `folder` of each, against the model there; gives the time it took [s]."""
+        budget = self.budget * len(recordings)
+        command = (*self.command, "--model", MODEL, "--budget", f"{budget:g}")
+        return diagnose(folder, command, {**recordings, MODEL: MODEL}, SLOWEST * budget + LONGEST)
 
     def source(self, name: str) -> Path:
         """The recording called `name`, as it was taken up."""
@@ -66,11 +69,9 @@ class Bench:
         return read_model(diagnosed if diagnosed.exists() else self.output / MODEL)
 
     def untouched(self, trial: Trial) -> dict[str, Any]:
-        """The diagnosis of a trial's recording as it is."""
-        answer: dict[str, Any] = json.loads(
-            (self.folder(replace(trial, kind=UNTOUCHED, level="plain")) / ANSWER).read_text()
-        )
-        return answer
+        """The diagnosis of a trial's recording as it is; one that says nothing where it gave no answer."""
+        answer = self.folder(replace(trial, kind=UNTOUCHED, level="plain")) / ANSWER
+        return dict(json.loads(answer.read_text())) if answer.exists() else NOTHING
 
 
 def take_up(machine: Machine, output: Path) -> None:
@@ -93,10 +94,10 @@ def diagnose_others(asked: tuple[int, Sequence[str]], bench: Bench) -> dict[str,
         return done
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    given = {MODEL: MODEL, **{f"{name}.mcap": f"{name}.mcap" for name in names}}
-    for file, source in ((MODEL, bench.output / MODEL), *((f"{name}.mcap", bench.source(name)) for name in names)):
-        shutil.copy(source, folder / file)
-    seconds = diagnose(folder, bench.asked(len(names)), given)
+    shutil.copy(bench.output / MODEL, folder)
+    for name in names:
+        shutil.copy(bench.source(name), folder)
+    seconds = bench.diagnose(folder, {f"{name}.mcap": f"{name}.mcap" for name in names})
     answer = json.loads((folder / ANSWER).read_text())
     effects = [effect["id"] for effect in answer["effects"]]
     label = {"recordings": list(names), "verdict": answer["verdict"], "effects": effects, "seconds": seconds}
@@ -145,7 +146,7 @@ def changed(trial: Trial, bench: Bench) -> tuple[Recording, Model, Truth]:
     size, limit = (strength(trial.kind, level, model, ruled_out) for level in (trial.level, "limit"))
     if size is None:
         raise CannotPutIn(f"the untouched recording gives no level {trial.level}")
-    values = values_at(trial.kind, size)
+    values = values_at(trial.kind, size, model)
     return (
         with_effect(recording, trial.kind, values, model),
         model,
@@ -162,7 +163,7 @@ def conduct(trial: Trial, bench: Bench) -> dict[str, Any] | None:
     if not prepare(trial, bench):
         return None
     try:
-        seconds = diagnose(folder, bench.asked(), {RECORDING: RECORDING, MODEL: MODEL})
+        seconds = bench.diagnose(folder, {RECORDING: RECORDING})
         scored = replace(judge(trial, bench), seconds=seconds)
     except InputError as problem:
         scored = replace(score(opened(folder), NOTHING, NOTHING), failure=str(problem))

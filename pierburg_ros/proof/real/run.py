@@ -67,15 +67,16 @@ def planned(machine: Machine, only: Sequence[str] = (), levels: Sequence[str] = 
     return Plan(machine, tuple(only) or kinds, tuple(each for each in LEVELS if not levels or each in levels), most)
 
 
-def begin(output: Path, plan: Plan) -> None:
-    """Make the run's folder, or find it again; that of another machine or of blind trials is refused."""
+def begin(output: Path, plan: Plan, budget: float) -> None:
+    """Make the run's folder, or find it again; one of other recordings, another model or budget [s] is refused."""
     if output.exists() and not output.is_dir():
         raise InputError(f"{output} is a file, expected a folder for the run. Choose another --output.")
     output.mkdir(parents=True, exist_ok=True)
-    note, own = output / RUN, {"real": plan.machine.name, "recordings": list(plan.machine.recordings)}
+    machine, note = plan.machine, output / RUN
+    own = {"recordings": list(machine.recordings), "model": machine.described.text(), "budget": budget}
     if note.exists() and json.loads(note.read_text()) != own:
-        raise InputError(f"{output} holds a run on other recordings. Choose another --output.")
-    take_up(plan.machine, output)
+        raise InputError(f"{output} holds a run on other recordings, model or budget. Choose another --output.")
+    take_up(machine, output)
     note.write_text(json.dumps(own))
 
 
@@ -93,7 +94,7 @@ def prove(
     Results belong to one version of the sources: that at the start. InputError where the recordings cannot be
     diagnosed at all.
     """
-    begin(output, plan)
+    begin(output, plan, budget)
     bench = Bench(output, source_version(), budget, command)
     cores = workers or os.cpu_count() or 1
     machine, done = plan.machine, 0

@@ -45,7 +45,8 @@ def strength(effect: str, level: str, model: Model, ruled_out: Sequence[Mapping[
     return float(limit) if level == "limit" else float(limit) / 2.0
 
 
-def values_at(effect: str, strength: float) -> dict[str, float]:
-    """All parameters of an effect by name, those beside the strength as they typically are."""
+def values_at(effect: str, strength: float, model: Model) -> dict[str, float]:
+    """All parameters of an effect by name, those beside the strength as they typically are in such an actuator."""
     declared = EFFECT[effect]
-    return {name: declared.typical.get(name, 0.0) for name in declared.names} | {declared.strength[0]: strength}
+    typical = declared.in_units(declared.typical, model.scales)
+    return {name: typical.get(name, 0.0) for name in declared.names} | {declared.strength[0]: strength}

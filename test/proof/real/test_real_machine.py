@@ -153,8 +153,8 @@ def test_plain_is_the_same_for_a_machine_of_another_size():
 
 def test_what_is_put_in_adds_to_what_is_there():
     own = SERVO.with_values({"input_delay.delay": 0.005, "sensor_quantization.step": 0.001})
-    assert added("input_delay", values_at("input_delay", 0.02), own) == {"input_delay.delay": 0.025}
-    assert added("sensor_quantization", values_at("sensor_quantization", 0.02), own) == {
+    assert added("input_delay", values_at("input_delay", 0.02, own), own) == {"input_delay.delay": 0.025}
+    assert added("sensor_quantization", values_at("sensor_quantization", 0.02, own), own) == {
         "sensor_quantization.step": 0.02
     }
 

@@ -124,6 +124,13 @@ def test_a_diagnosis_that_fails_is_a_trial_without_an_answer(tmp_path, machine, 
     assert result["failure"].endswith("status 1: cannot tell") and not result["named"]
 
 
+def test_a_recording_without_an_answer_as_it_is_sets_no_limit(tmp_path, machine, asked, monkeypatch):
+    known = machine_in(tmp_path / "bench", machine.described, read_recording, known=True)
+    monkeypatch.setenv("DIAGNOSIS", "fails")
+    results = prove(tmp_path / "run", run.planned(known, ["sensor_lag"], most=1))
+    assert [(result["kind"], result["limit"]) for result in results] == [("untouched", None), ("sensor_lag", None)]
+
+
 def test_an_unknown_kind_or_level_is_refused(machine):
     with pytest.raises(InputError, match=r"found kind 'rust', expected one of untouched, input_delay, .* for pierburg"):
         run.planned(machine, ["rust"])
@@ -132,17 +139,23 @@ def test_an_unknown_kind_or_level_is_refused(machine):
 
 
 def test_a_folder_of_other_recordings_is_refused(tmp_path, machine, asked):
-    run.begin(tmp_path / "run", run.planned(machine))
+    run.begin(tmp_path / "run", run.planned(machine), 30.0)
     (tmp_path / "bench" / "second.mcap").rename(tmp_path / "bench" / "third.mcap")
     other = machine_in(tmp_path / "bench", machine.described, read_recording)
     with pytest.raises(InputError, match="holds a run on other recordings"):
-        run.begin(tmp_path / "run", run.planned(other))
+        run.begin(tmp_path / "run", run.planned(other), 30.0)
+    with pytest.raises(InputError, match="holds a run on other recordings, model or budget"):
+        run.begin(tmp_path / "run", run.planned(machine), 60.0)
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["--real", "nowhere"], "nowhere is no folder, expected one that holds recordings of one machine."),
+        (
+            ["--real", ".", "--over-graph"],
+            "Found --over-graph with --real, and nothing is recorded there. Leave one of them out.",
+        ),
         (["--budget", "3"], "Found --budget without --real, expected the folder of recordings that it is about."),
     ],
 )
