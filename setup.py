@@ -58,6 +58,8 @@ TEST_TOOLS = [
     "pandas",
 ]
 
+DOCS = ["sphinx", "myst-parser", "furo"]
+
 setup(
     name=PACKAGE,
     version="0.1.0",
@@ -85,6 +87,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/layouts", sorted([*glob("layouts/*.json"), *glob("layouts/*.xml")])),
         (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
         (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
@@ -107,7 +110,7 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "docs": DOCS, "tables": ["pandas"], "mujoco": MUJOCO},
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

@@ -36,8 +36,9 @@ ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
 ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
+ALLOWED["viewers"] = {"errors", "arrays", "recording"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export", "viewers"}
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers", "viewers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
@@ -82,7 +83,18 @@ ROOMS = {
         "message_types": {"formats", "signal_map", "signals"},
         "decoding": {"formats", "message_types", "signal_map", "signals"},
         "topics": {"decoding", "formats", "signal_map", "signals"},
-        "read": {"clocks", "columns", "formats", "loss", "recording", "signal_map", "signals", "tables", "topics"},
+        "read": {
+            "clocks",
+            "columns",
+            "file_times",
+            "formats",
+            "loss",
+            "recording",
+            "signal_map",
+            "signals",
+            "tables",
+            "topics",
+        },
         "inspection": {
             "clocks",
             "columns",

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import Progress
 from rich.table import Table
 
 from pierburg_ros.cli import prove_real
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.cli.terminal import progress_bar, terminal
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.graph import NotRecorded
@@ -44,7 +44,7 @@ def prove(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+) -> object:
     """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
@@ -53,66 +53,55 @@ def prove(
 
     With --real, effects are put into your own recordings by changing their channels where that is exact; the diagnosis
     has to find them beside all that is really there, against the model of your other recordings. Writes results.jsonl
-    and proof-real.md. For example: pierburg prove --real bench/ --actuator my_actuator.yaml --output proof
+    and proof-real.md.
     """
     if real is not None:
-        for option, asked in (("--generate-only", generate_only), ("--over-graph", over_graph)):
-            if asked:
-                raise InputError(f"Found {option} with --real, and nothing is recorded there. Leave one of them out.")
+        why = "with --real, where nothing is recorded. Leave it out"
+        refuse(why, {"--generate-only": generate_only, "--over-graph": over_graph})
         machine = prove_real.machine(real, actuator, model, signals, topic, time)
-        prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
-        return
-    refuse_alone(
-        {
-            "--level": level,
-            "--budget": budget,
-            "--actuator": actuator,
-            "--model": model,
-            "--signals": signals,
-            "--topic": topic,
-            "--time": time,
-        }
-    )
+        return prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
+    given: dict[str, object] = {"--level": level, "--budget": budget, "--actuator": actuator, "--model": model}
+    given |= {"--signals": signals, "--topic": topic, "--time": time}
+    refuse("without --real, expected the folder of recordings that it is about", given)
     plan = planned(seed, trials, only or [], over_graph)
     if over_graph:
         require_ros()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with progress_bar() as progress:
-        reporter = Reporter(progress, plan.size)
+    with progress() as show:
+        reporter = Reporter(show)
         command = None if generate_only else DIAGNOSE
         results = run.prove(output, plan, workers=jobs, command=command, report=reporter)
     if generate_only:
         terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
-        return
+        return {"trials": str(output / "trials")}
     done = document.Run(results, plan)
     document.write(done, output, docs)
     terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
+    return (output / "results.json").read_text(encoding="utf-8")
 
 
-def refuse_alone(given: Mapping[str, Any]) -> None:
-    """Refuse options that say nothing without recordings."""
+def refuse(why: str, given: Mapping[str, object]) -> None:
+    """InputError for options that say nothing here, and `why`."""
     for option, value in given.items():
-        if value is not None:
-            raise InputError(f"Found {option} without --real, expected the folder of recordings that it is about.")
+        if value:
+            raise InputError(f"Found {option} {why}.")
 
 
 class Reporter:
     """Shows how far a run is, and how it stands."""
 
-    def __init__(self, progress: Progress, total: int) -> None:
-        self.progress = progress
-        self.task = progress.add_task("blind trials", total=total)
+    def __init__(self, show: Tell) -> None:
+        self.show = show
         self.right = self.alarms = 0
-        self.description = "recording"
+        show(Step("blind trials"))
 
     def __call__(self, done: int, total: int, last: dict[str, Any] | NotRecorded | None) -> None:
         if isinstance(last, NotRecorded):
-            self.progress.console.print(f"Not recorded, left out: {last}", style="yellow")
+            terminal(stderr=True).print(f"Not recorded, left out: {last}", soft_wrap=True)
         elif last is not None:
             self.right += last["right"]
             self.alarms += last["false_alarm"]
-            self.description = f"{self.right} right, {self.alarms} false alarms"
-        self.progress.update(self.task, completed=done, total=total, description=self.description)
+        self.show(Step("blind trials", done, total, f"{self.right} right, {self.alarms} false alarms"))
 
 
 def summary(done: document.Run) -> Table:

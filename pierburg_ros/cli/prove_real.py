@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import Progress
 from rich.table import Table
 
-from pierburg_ros.cli.models import chosen_or_valve
+from pierburg_ros.cli.models import chosen_model
+from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.recordings import topics_of
-from pierburg_ros.cli.terminal import progress_bar, terminal
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.reading import read
@@ -49,7 +49,7 @@ def machine(
     time: str | None,
 ) -> Machine:
     """The machine whose recordings lie in `folder`, read as the other commands read them; says what is left out."""
-    described = chosen_or_valve(model, actuator)
+    described = chosen_model(model, actuator)
     topics = topics_of(topic)
     found = machine_in(
         folder,
@@ -58,7 +58,7 @@ def machine(
         known=model is not None,
     )
     for why in found.left_out:
-        terminal(stderr=True).print(f"Left out: {why}", style="yellow", soft_wrap=True)
+        terminal(stderr=True).print(f"Left out: {why}", soft_wrap=True)
     return found
 
 
@@ -71,32 +71,34 @@ def prove(
     jobs: int | None,
     budget: float | None,
     docs: Path | None,
-) -> None:
-    """Conduct the trials and write what they came to."""
+) -> list[dict[str, Any]]:
+    """Conduct the trials, write what they came to, and give their results."""
     plan = run.planned(machine, only, levels, most)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with progress_bar() as progress:
-        reporter = Reporter(progress, len(plan.trials))
-        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, report=reporter)
+    with progress() as show:
+        show(Step("the models of other recordings"))
+        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, report=Reporter(show))
     if not results:
         raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
     done = Run(results, plan)
     document.write(done, output, docs)
     terminal().print(summary(done), f"Results in {output}: proof-real.md, results.jsonl")
+    return results
 
 
 class Reporter:
-    """Shows how far a run is, and what was answered last."""
+    """Shows how far a run is, and how many of the effects that were put in are named."""
 
-    def __init__(self, progress: Progress, total: int) -> None:
-        self.progress = progress
-        self.task = progress.add_task("the model of each half", total=total)
-        self.description = "the model of each half"
+    def __init__(self, show: Tell) -> None:
+        self.show = show
+        self.put_in = self.named = 0
 
     def __call__(self, done: int, total: int, last: dict[str, Any] | None) -> None:
-        if last is not None:
-            self.description = f"{last['name']}: {answered(last)}"
-        self.progress.update(self.task, completed=done, total=total, description=self.description)
+        if last is not None and last["true"] is not None:
+            self.put_in += 1
+            self.named += last["named"]
+        what = "" if last is None else f"{last['name']}: {answered(last)}"
+        self.show(Step("real recordings", done, total, f"{self.named} of {self.put_in} named", what=what))
 
 
 def summary(done: Run) -> Table:

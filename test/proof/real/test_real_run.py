@@ -154,9 +154,12 @@ def test_a_folder_of_other_recordings_is_refused(tmp_path, machine, asked):
         (["--real", "nowhere"], "nowhere is no folder, expected one that holds recordings of one machine."),
         (
             ["--real", ".", "--over-graph"],
-            "Found --over-graph with --real, and nothing is recorded there. Leave one of them out.",
+            "Found --over-graph with --real, where nothing is recorded. Leave it out.",
         ),
-        (["--budget", "3"], "Found --budget without --real, expected the folder of recordings that it is about."),
+        (
+            ["--budget", "3"],
+            "Found --budget without --real, expected the folder of recordings that it is about.",
+        ),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(tmp_path, capsys, arguments, said):
