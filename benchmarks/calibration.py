@@ -37,8 +37,8 @@ def table(names: list[tuple[float, bool]]) -> str:
         right = [is_right for confidence, is_right in names if low <= confidence < high or confidence == high == 1.0]
         if right:
             rows.append(f"| {low:g} to {high:g} | {len(right)} | {Share(sum(right), len(right))} |")
-    head = ["| confidence | names given | of these concealed (95 % Wilson interval) |", "|---|---|---|"]
-    return "\n".join([*head, *rows])
+    heads = ["| confidence | names given | of these concealed (95 % Wilson interval) |", "|---|---|---|"]
+    return "\n".join([*heads, *rows])
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 
 project = "pierburg_ros"
 author = "pierburg_ros developers"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "reference.fill"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "reference.site"]
 exclude_patterns = ["**/README.template.md", "**/__pycache__"]
 html_theme = "furo"
 html_title = "pierburg_ros"

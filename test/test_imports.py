@@ -45,10 +45,12 @@ FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "diagnosis": {
         "schema": set(),
+        "cleaning": set(),
         "evidence": {"schema"},
         "search": {"evidence"},
         "location": {"schema", "evidence"},
         "remainder": {"evidence", "search"},
+        "disturbance": {"search", "remainder"},
         "limits": {"search"},
         "verdict": {"schema", "search", "remainder"},
         "result": {"schema"},
@@ -73,6 +75,7 @@ ROOMS = {
         "signal_path": {"torques", "motion", "gear", "state"},
     },
     "proof": {
+        "dirt": set(),
         "formulation": set(),
         "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
     },

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
+from zipfile import ZipFile
 
 import pytest
 import yaml
@@ -46,7 +47,7 @@ def test_the_manifest_is_format_3_with_a_valid_maintainer():
 
 def test_manifest_and_setup_agree():
     assert MANIFEST.findtext("name") == "pierburg_ros"
-    assert f'version="{MANIFEST.findtext("version")}"' in SETUP
+    assert not re.search(r"version=['\"]", SETUP), "the version is read from package.xml"
 
 
 def test_every_ros_package_that_the_nodes_import_is_a_dependency():
@@ -59,7 +60,7 @@ def test_every_ros_package_that_the_nodes_import_is_a_dependency():
 
 
 def test_the_wheels_are_an_extra_and_not_a_requirement():
-    assert 'extras_require={"ros": ROS_WHEELS' in SETUP
+    assert '"ros": ROS_WHEELS' in SETUP
     required = SETUP.split("install_requires=")[1].split("]")[0]
     assert "ros-" not in required
 
@@ -167,22 +168,51 @@ def test_colcon_gets_an_executable_for_every_node_and_command(arguments):
         assert callable(getattr(import_module(module), function))
 
 
-def test_pip_puts_the_one_command_on_the_path(tmp_path):
-    source, wheels, prefix = tmp_path / "source", tmp_path / "wheels", tmp_path / "prefix"
-    source.mkdir()
-    for name in ("pierburg_ros", "launch", "config", "resource", "urdf", "sros2", "layouts"):
-        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml"):
-        shutil.copy(ROOT / name, source)
-    pip = [sys.executable, "-m", "pip", "--quiet"]
-    quick = ["--no-deps", "--no-index"]
-    subprocess.run([*pip, "wheel", *quick, "--no-build-isolation", "-w", wheels, source], check=True)
-    apart = ["--no-compile", "--ignore-installed", "--prefix", prefix]  # leaves the environment of the tests alone
-    subprocess.run([*pip, "install", *quick, *apart, *wheels.iterdir()], check=True)
-    assert [path.name for path in (prefix / "bin").iterdir()] == ["pierburg"]
-    installed = {path.name for path in prefix.rglob("*") if path.is_file()}
-    data = [path for path in (ROOT / "pierburg_ros").rglob("*") if path.suffix in (".yaml", ".html", ".typed")]
-    assert data and installed >= {path.name for path in data}
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel that pip makes of the source distribution, in an empty folder."""
+    folder = tmp_path_factory.mktemp("distribution")
+    source = folder / "source"
+    left_out = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "docs", "install", "log", "test")
+    shutil.copytree(ROOT, source, ignore=left_out)
+    make = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
+    subprocess.run([sys.executable, "-c", make, folder], cwd=source, check=True, capture_output=True)
+    (distribution,) = folder.glob("*.tar.gz")
+    pip = [sys.executable, "-m", "pip", "--quiet", "wheel", "--no-deps", "--no-index", "--no-build-isolation"]
+    subprocess.run([*pip, "-w", folder / "wheels", distribution], check=True)
+    (made,) = (folder / "wheels").iterdir()
+    return made
+
+
+def test_the_wheel_of_the_source_distribution_holds_every_file_of_the_package(wheel):
+    with ZipFile(wheel) as archive:
+        held = {name for name in archive.namelist() if ".dist-info/" not in name}
+    package = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "pierburg_ros").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    share = f"{wheel.name.removesuffix('-py3-none-any.whl')}.data/data/share/pierburg_ros"
+    shared = {
+        f"{share}/{path.relative_to(ROOT).as_posix()}"
+        for pattern in ("launch/*.launch.py", "config/*.yaml", "layouts/*.*[ln]", "urdf/*.urdf", "sros2/*.xml")
+        for path in ROOT.glob(pattern)
+    }
+    index = f"{share.removesuffix('/pierburg_ros')}/ament_index/resource_index/packages/pierburg_ros"
+    assert held == package | shared | {index, f"{share}/package.xml"}
+
+
+def test_the_version_of_the_wheel_is_that_of_the_manifest(wheel):
+    with ZipFile(wheel) as archive:
+        (metadata,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        assert f"\nVersion: {MANIFEST.findtext('version')}\n" in archive.read(metadata).decode()
+
+
+def test_pip_puts_the_one_command_on_the_path(wheel, tmp_path):
+    apart = ["--no-compile", "--ignore-installed", "--prefix", tmp_path]  # leaves the environment of the tests alone
+    pip = [sys.executable, "-m", "pip", "--quiet", "install", "--no-deps", "--no-index"]
+    subprocess.run([*pip, *apart, wheel], check=True)
+    assert [path.name for path in (tmp_path / "bin").iterdir()] == ["pierburg"]
 
 
 def parameters(file):

@@ -147,8 +147,10 @@ def application(called: str | None = None) -> typer.Typer:
     app.callback()(options)
     for name, command in COMMANDS.items():
         function = command_of(name) if name == called else summary_only
-        added = app.command(name, context_settings=command.settings, short_help=command.summary, epilog=command.epilog)
-        added(function)
+        registered = app.command(
+            name, short_help=command.summary, epilog=command.epilog, context_settings=command.settings
+        )
+        registered(function)
     return app
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.table import Table
 
 from pierburg_ros.cli import prove_real
 from pierburg_ros.cli.jobs import JobsOption
@@ -19,6 +18,7 @@ from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.proof import document, run
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import planned
@@ -36,6 +36,9 @@ def prove(
     jobs: JobsOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
+    dirty: Annotated[
+        bool, typer.Option("--dirty", help="Spoil the recordings, each trial by one kind of dirt.")
+    ] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
     level: LevelOption = None,
     budget: BudgetOption = None,
@@ -57,13 +60,13 @@ def prove(
     """
     if real is not None:
         why = "with --real, where nothing is recorded. Leave it out"
-        refuse(why, {"--generate-only": generate_only, "--over-graph": over_graph})
+        refuse(why, {"--generate-only": generate_only, "--over-graph": over_graph, "--dirty": dirty})
         machine = prove_real.machine(real, actuator, model, signals, topic, time)
         return prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
     given: dict[str, object] = {"--level": level, "--budget": budget, "--actuator": actuator, "--model": model}
     given |= {"--signals": signals, "--topic": topic, "--time": time}
     refuse("without --real, expected the folder of recordings that it is about", given)
-    plan = planned(seed, trials, only or [], over_graph)
+    plan = planned(seed, trials, only or [], over_graph, dirty)
     if over_graph:
         require_ros()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -76,7 +79,9 @@ def prove(
         return {"trials": str(output / "trials")}
     done = document.Run(results, plan)
     document.write(done, output, docs)
-    terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
+    console = terminal()
+    console.print(summary(done))
+    console.print(f"Results in {output}: proof.md, results.json", soft_wrap=True)
     return (output / "results.json").read_text(encoding="utf-8")
 
 
@@ -104,11 +109,8 @@ class Reporter:
         self.show(Step("blind trials", done, total, f"{self.right} right, {self.alarms} false alarms"))
 
 
-def summary(done: document.Run) -> Table:
+def summary(done: document.Run) -> Listing:
     """The headline figures."""
-    table = Table(title=f"Blind trials, n = {len(done.results)} of {done.plan.size}", title_justify="left")
-    table.add_column("figure")
-    table.add_column("count (95 % Wilson interval)")
-    for name, share in document.headline(done).items():
-        table.add_row(name, str(share))
-    return table
+    rows = [(name, str(share)) for name, share in document.headline(done).items()]
+    title = f"Blind trials, n = {len(done.results)} of {done.plan.size}"
+    return Listing(("figure", "count (95 % Wilson interval)"), rows, title)

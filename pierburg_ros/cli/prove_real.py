@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.table import Table
 
 from pierburg_ros.cli.models import chosen_model
 from pierburg_ros.cli.progress import Step, Tell, progress
@@ -17,6 +16,7 @@ from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.reading import read
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.proof.real import document, run
 from pierburg_ros.proof.real.document import Run, answered, headline
 from pierburg_ros.proof.real.machine import Machine, machine_in
@@ -101,11 +101,9 @@ class Reporter:
         self.show(Step("real recordings", done, total, f"{self.named} of {self.put_in} named", what=what))
 
 
-def summary(done: Run) -> Table:
+def summary(done: Run) -> Listing:
     """The headline figures."""
-    table = Table(title=f"Effects put into real recordings, n = {len(done.results)}", title_justify="left")
-    table.add_column("figure")
-    table.add_column("count (95 % Wilson interval)")
-    for name, share in headline(done).items():
-        table.add_row(name, str(share))
-    return table
+    rows = [(name, str(share)) for name, share in headline(done).items()]
+    return Listing(
+        ("figure", "count (95 % Wilson interval)"), rows, f"Effects put into real recordings, n = {len(done.results)}"
+    )

@@ -65,7 +65,7 @@ def repetition(residual: Signal) -> float:
 
 
 def grid(measured: Signal) -> float:
-    """Smallest step between values if all are whole steps apart, otherwise 0; `measured` of shape (samples,)."""
+    """Smallest step between values if all are whole steps apart, otherwise 0."""
     values = np.unique(measured)
     if values.size < 3:
         return 0.0

@@ -16,6 +16,7 @@ from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 
 
@@ -95,15 +96,15 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Pieces]:
-    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut.
+def parts_of(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> tuple[list[Recording], Pieces]:
+    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut: `without` some spans.
 
     One part where nothing is missing; of more, each has at least twice the samples that tell where the shaft stands.
     InputError where none can be simulated.
     """
     fewest = 2 * EVEN
     still = forgets(model.actuator)
-    cut = pieces(from_standstill(recording, model) if still else recording, model)
+    cut = pieces(from_standstill(recording, model) if still else recording, model, without)
     begun = _from_standstills(cut.parts) if still else cut.parts
     parts = [part for part in begun if part.time.size >= fewest or len(cut.parts) == 1]
     if not parts:

@@ -122,12 +122,12 @@ def stretch_length(time: Signal, measured: Signal, quantity: str) -> float:
     interval = float(np.median(np.diff(time)))
     noise = noise_of(time, measured)
     first, second = (0, 1) if quantity == "speed" else (1, 2)
-    velocity, acceleration = (_spread(measured, order, interval, noise) for order in (first, second))
+    velocity, acceleration = (spread(measured, order, interval, noise) for order in (first, second))
     own = TIMES * velocity / acceleration if acceleration > 0.0 else math.inf
     return min(max(own, FEWEST * interval), float(time[-1] - time[0]))
 
 
-def _spread(measured: Signal, order: int, interval: float, noise: float) -> float:
+def spread(measured: Signal, order: int, interval: float, noise: float) -> float:
     """Standard deviation of a derivative of `measured`, over a window in which the noise is the lesser part of it."""
     window, own, added = WINDOW, 0.0, 1.0
     while added > own and window <= measured.size:

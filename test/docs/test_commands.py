@@ -25,7 +25,7 @@ from reference.parameters import NODES as DECLARED
 
 LONG = {"demo", "run", "tune", "prove", "experiment", "fleet"}
 """Commands that take minutes or need ROS: what they are given is read, and no more."""
-OUTSIDE = {"ros2", "rosdep", "source", "export", "for", "do", "done", "python3", "pip"}
+OUTSIDE = {"rerun", "ros2", "rosdep", "source", "export", "for", "do", "done", "python3", "pip"}
 OUTSIDE |= {".venv/bin/pip", ".venv/bin/python"}
 """What is not ours: ROS, the shell, installers. The pages say what was tried of it."""
 OWN = {"README.md", "docs/story.md", "docs/my_bag.md", "docs/description.md"}

@@ -1,25 +1,11 @@
-"""A Sphinx extension that fills the reference from the code: `<!-- written from the code: NAME -->` becomes a table."""
+"""What the site adds to the pages as GitHub shows them: its contents, and blocks of code in docstrings."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-from reference import commands, document, parameters, topics
-
-WRITTEN = {
-    "commands": commands.page,
-    "diagnosis": document.page,
-    "parameters": parameters.page,
-    "topics": topics.page,
-}
 PAGE = re.compile(r"^- \[(.+?)\]\((.+?)\.md\)", flags=re.MULTILINE)
-MARK = re.compile(r"<!-- written from the code: (\w+) -->")
-
-
-def filled(text: str) -> str:
-    """A page with what its marks stand for."""
-    return MARK.sub(lambda mark: WRITTEN[mark[1]](), text)
 
 
 def with_contents(index: str) -> str:
@@ -42,11 +28,12 @@ def code_blocks(*event: Any) -> None:
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Fill every page that Sphinx reads."""
+    """Called by Sphinx."""
 
-    def fill(_: Any, page: str, source: list[str]) -> None:
-        source[0] = with_contents(source[0]) if page == "index" else filled(source[0])
+    def read(_: Any, page: str, source: list[str]) -> None:
+        if page == "index":
+            source[0] = with_contents(source[0])
 
-    app.connect("source-read", fill)
+    app.connect("source-read", read)
     app.connect("autodoc-process-docstring", code_blocks)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
