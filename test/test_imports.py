@@ -74,7 +74,11 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set(), "dirt": set()},
+    "proof": {
+        "dirt": set(),
+        "formulation": set(),
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+    },
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},

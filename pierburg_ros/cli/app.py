@@ -125,8 +125,13 @@ COMMANDS = {
         examples=("pierburg recover run.mcap", "pierburg recover run.mcap -o whole.mcap"),
     ),
     "prove": Command(
-        "Seeded blind trials of the diagnosis.",
-        examples=("pierburg prove --trials 1 -o proof", "pierburg prove --only backlash --only drift -o proof"),
+        "Seeded blind trials of the diagnosis; known effects put into your own recordings.",
+        examples=(
+            "pierburg prove --trials 1 -o proof",
+            "pierburg prove --only backlash --only drift -o proof",
+            "pierburg prove --real bench/ --actuator my.yaml -o proof",
+            "pierburg prove --real bench/ --model my.yaml --budget 60 -o proof",
+        ),
     ),
     "tune": Command(
         "PIFLC gains and sets for a stated goal over a set of plants.",
