@@ -14,6 +14,7 @@ COMMANDS = (
     "identify",
     "replay",
     "diagnose",
+    "fleet",
     "inspect",
     "export",
     "actuator",
@@ -43,8 +44,10 @@ ROS_WHEELS = [
     "ros-jazzy-lifecycle-msgs",
 ]
 MUJOCO = ["mujoco>=3.13; python_version >= '3.11'"]
+FLEET = ["dask", "distributed", "pyarrow", "fsspec", "pandas"]
 TEST_TOOLS = [
     *MUJOCO,
+    *FLEET,
     "pytest",
     "pytest-rerunfailures",
     "pytest-xdist",
@@ -55,7 +58,8 @@ TEST_TOOLS = [
     "scikit-fuzzy",
     "networkx",
     "packaging",
-    "pandas",
+    "polars",
+    "duckdb",
 ]
 
 setup(
@@ -75,6 +79,8 @@ setup(
             "cli/*.yaml",
             "comparison/*.html",
             "diagnosis/report/*.html",
+            "fleets/*.html",
+            "fleets/*.js",
             "identification/*.html",
             "pages/*.css",
             "pages/*.html",
@@ -107,7 +113,7 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
+    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "fleet": FLEET, "mujoco": MUJOCO},
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

@@ -47,6 +47,7 @@ COMMANDS = {
     "identify": Command("Static characteristic, step response and parameters from recordings."),
     "replay": Command("Simulate a recorded duty and compare with what was measured."),
     "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
+    "fleet": Command("Many recordings of many actuators: how each ages, and which to look at first."),
     "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, what each could be."),
     "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
     "actuator": Command("Describe an actuator; say what is implausible about a description."),
@@ -178,6 +179,7 @@ experiment = standalone("experiment")
 identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
+fleet = standalone("fleet")
 inspect = standalone("inspect")
 export = standalone("export")
 actuator = standalone("actuator")

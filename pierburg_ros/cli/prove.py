@@ -17,7 +17,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.proof import document, run
@@ -32,6 +32,7 @@ def prove(
     only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
     jobs: JobsOption = None,
+    scheduler: SchedulerOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
@@ -40,7 +41,7 @@ def prove(
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
-    reports what is done; called again, it goes on.
+    reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
     """
     plan = planned(seed, trials, only or [], over_graph)
     if over_graph:
@@ -56,7 +57,7 @@ def prove(
     ) as progress:
         reporter = Reporter(progress, plan.size)
         command = None if generate_only else DIAGNOSE
-        results = run.prove(output, plan, workers=jobs, command=command, report=reporter)
+        results = run.prove(output, plan, workers=jobs, scheduler=scheduler, command=command, report=reporter)
     if generate_only:
         terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
         return

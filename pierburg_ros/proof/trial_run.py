@@ -8,7 +8,6 @@ result.json                 the score, and the versions of the sources it belong
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
@@ -40,9 +39,6 @@ DIAGNOSE = (sys.executable, "-c", "from pierburg_ros.cli.app import main; main()
 """The command as a process of its own; the recording and `--output DIR` follow."""
 LONGEST = 900.0  # s, after which a diagnosis counts as failed
 RESULT = "result.json"
-PACKAGE = Path(__file__).parents[1]
-DIAGNOSING = ("actuators", "diagnosis", "effects", "estimation", "plant", "recording")
-"""Folders whose sources a diagnosis depends on."""
 
 
 def prepare(trial: Trial, folder: Path) -> None:
@@ -142,15 +138,6 @@ def result(folder: Path, version: str) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     return label if label["sources"] == version else None
-
-
-def source_version(package: Path = PACKAGE) -> str:
-    """Digest of the sources that a diagnosis depends on."""
-    digest = hashlib.sha256()
-    for part in DIAGNOSING:
-        for file in sorted((package / part).rglob("*.py")):
-            digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def finite(value: Any) -> Any:

@@ -123,6 +123,7 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         losses=losses,
         input=driven,
         path=None,
+        begun=1e-9 * int(origin),
     )
 
 

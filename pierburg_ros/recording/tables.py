@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -80,7 +81,8 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
     measured = reader.channel(measuring)
     origin = float(measured.time[0])
     measured, inputs = shifted(measured, origin), shifted(reader.channel(driving), origin)
-    acting = {signal: shifted(reader.channel(signal), origin) for signal in OPTIONAL if reader.is_filled(signal)}
+    filled = [signal for signal in OPTIONAL if reader.is_filled(signal)]
+    acting: dict[str, Any] = {signal: shifted(reader.channel(signal), origin) for signal in filled}
     breaks = pauses(measured.time)
     losses = (
         Loss(quantity, None, measured.time.size, breaks),
@@ -96,6 +98,7 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
         losses=tuple(loss for loss in losses if loss.spans),
         input=driven,
         path=None,
+        begun=origin,
         **acting,
     )
 
