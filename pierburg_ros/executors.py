@@ -69,7 +69,7 @@ def _ended(
             yield _alone(pool(), work, suspects.popleft())
             continue
         if not suspects:
-            for item in islice(left, room() - len(under_way)):
+            for item in islice(left, max(room() - len(under_way), 0)):
                 under_way[pool().submit(work, item)] = item
         if not under_way:
             return
