@@ -1,4 +1,5 @@
-# `make demo` shows the main job, `make test` runs every check, `make quick` the quick tests; all set up .venv first, once.
+# `make demo` shows the main job, `make test` runs every check, `make quick` the quick tests, `make site`
+# builds the documentation; all set up .venv first, once.
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -9,18 +10,18 @@ PYTHON := $(shell for name in python3.13 python3.12 python3.11 python3.10 python
 	"$$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' \
 	2>/dev/null && echo "$$name" && break; done)
 
-.PHONY: demo test quick lint types library nodes colcon benchmarks clean
+.PHONY: demo test quick lint types site library nodes colcon benchmarks clean
 
 demo: $(STAMP)
 	$(BIN)/pierburg demo
 
-test: lint types library nodes colcon
+test: lint types site library nodes colcon
 
 $(STAMP): setup.py pyproject.toml
 	@test -n "$(PYTHON)" || { echo "No Python 3.10 to 3.13 with venv found; install one (e.g. python3-venv)."; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet 'setuptools>=70.1'
-	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test]'
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,docs]'
 	@touch $@
 
 lint: $(STAMP)
@@ -28,6 +29,10 @@ lint: $(STAMP)
 
 types: $(STAMP)
 	$(BIN)/mypy
+
+# The documentation, build/site/index.html; a warning is an error.
+site: $(STAMP)
+	$(BIN)/sphinx-build -q -W --keep-going docs build/site
 
 library: $(STAMP)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m 'not ros'

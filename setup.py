@@ -62,6 +62,8 @@ TEST_TOOLS = [
     "duckdb",
 ]
 
+DOCS = ["sphinx", "myst-parser", "furo"]
+
 setup(
     name=PACKAGE,
     version="0.1.0",
@@ -91,6 +93,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/layouts", sorted([*glob("layouts/*.json"), *glob("layouts/*.xml")])),
         (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
         (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
@@ -113,7 +116,14 @@ setup(
         "zstandard",
         "lz4",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "fleet": FLEET, "mujoco": MUJOCO},
+    extras_require={
+        "ros": ROS_WHEELS,
+        "test": TEST_TOOLS,
+        "docs": DOCS,
+        "tables": ["pandas"],
+        "fleet": FLEET,
+        "mujoco": MUJOCO,
+    },
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

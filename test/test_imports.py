@@ -45,9 +45,14 @@ ALLOWED["proof"] = (
     }
 )
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "version"} | {"identification", "export"}
+ALLOWED["viewers"] = {"errors", "arrays", "recording"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "version"} | {
+    "identification",
+    "export",
+    "viewers",
+}
 ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers"}
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "viewers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
@@ -89,7 +94,18 @@ ROOMS = {
         "message_types": {"formats", "signal_map", "signals"},
         "decoding": {"formats", "message_types", "signal_map", "signals"},
         "topics": {"decoding", "formats", "signal_map", "signals"},
-        "read": {"clocks", "columns", "formats", "loss", "recording", "signal_map", "signals", "tables", "topics"},
+        "read": {
+            "clocks",
+            "columns",
+            "file_times",
+            "formats",
+            "loss",
+            "recording",
+            "signal_map",
+            "signals",
+            "tables",
+            "topics",
+        },
         "inspection": {
             "clocks",
             "columns",

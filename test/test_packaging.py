@@ -7,6 +7,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import yaml
@@ -23,6 +24,8 @@ from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
 MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
+MONITOR_ALONE = ROOT / "launch" / "monitor.launch.py"
+REPLAY = ROOT / "launch" / "replay.launch.py"
 MANIFEST = ElementTree.parse(ROOT / "package.xml").getroot()
 SETUP = (ROOT / "setup.py").read_text()
 NOT_OF_ROS = re.compile(r"python3-")
@@ -50,7 +53,7 @@ def test_every_ros_package_that_the_nodes_import_is_a_dependency():
     from test_imports import ROS, SOURCES, imported
 
     used = {name.split(".")[0] for source in SOURCES for name in imported(source)} & ROS
-    used |= {name.split(".")[0] for launch in (LAUNCH, MONITORED) for name in imported(launch)} & ROS
+    used |= {name.split(".")[0] for launch in ROOT.glob("launch/*.py") for name in imported(launch)} & ROS
     used |= set(re.findall(r'package="(\w+)"', MONITORED.read_text())) - {"pierburg_ros"}
     assert used == {name for name in dependencies() if not NOT_OF_ROS.match(name)}
 
@@ -108,6 +111,39 @@ def test_the_launch_file_leaves_the_recorder_out_when_told():
     assert [node["name"] for node in nodes] == ["plant", "controller"]
 
 
+def test_the_monitor_is_launched_with_parameters_that_it_has():
+    arguments, (node,) = launched(MONITOR_ALONE, namespace="left", angle="hall_voltage", simulated_time="true")
+    assert all(len(each["description"]) > 20 for each in arguments.values())
+    assert node["executable"] in entry_points("install") and node["namespace"] == "left"
+    accepted = {each.name: each for each in MONITOR}
+    (parameters,) = node["parameters"]
+    assert parameters.pop("use_sim_time") is True
+    assert parameters["angle_topic"] == "hall_voltage"
+    for name, value in parameters.items():
+        assert accepted[name].accepted(value) == value
+    for name in ("angle", "duty"):
+        assert set(arguments[name]["choices"]) == set(accepted[f"{name}_topic"].choices)
+
+
+def test_a_replay_is_launched_as_the_command_that_a_person_would_type(tmp_path):
+    arguments, (process,) = launched(REPLAY, recording="run.mcap", output=str(tmp_path / "out"))
+    assert all(len(each["description"]) > 20 for each in arguments.values())
+    executable, *command = process["cmd"]
+    assert executable == "pierburg_ros/replay" and "replay" in entry_points("install")
+    assert command == ["run.mcap", "--actuator", "pierburg", "--output", str(tmp_path / "out")]
+    _, (process,) = launched(REPLAY, recording="run.mcap", model="model.yaml", signals="map.yaml")
+    assert process["cmd"][2:6] == ["--model", "model.yaml", "--signals", "map.yaml"]
+
+
+def test_a_replay_opens_its_result_where_there_is_one():
+    _, (process, handler) = launched(REPLAY, recording="run.mcap", viewer="plotjuggler")
+    assert handler.target_action is process
+    (viewer,) = handler.on_exit(SimpleNamespace(returncode=0), None)
+    assert handler.on_exit(SimpleNamespace(returncode=2), None) == []
+    assert viewer["cmd"][:3] == ["plotjuggler/plotjuggler", "--datafile", "replayed/replay.mcap"]
+    assert Path(viewer["cmd"][4]).exists()
+
+
 def entry_points(*arguments):
     """Executables that setup.py declares when it is called with these arguments."""
     code = (
@@ -134,7 +170,7 @@ def test_colcon_gets_an_executable_for_every_node_and_command(arguments):
 def test_pip_puts_the_one_command_on_the_path(tmp_path):
     source, wheels, prefix = tmp_path / "source", tmp_path / "wheels", tmp_path / "prefix"
     source.mkdir()
-    for name in ("pierburg_ros", "launch", "config", "resource", "urdf", "sros2"):
+    for name in ("pierburg_ros", "launch", "config", "resource", "urdf", "sros2", "layouts"):
         shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml"):
         shutil.copy(ROOT / name, source)

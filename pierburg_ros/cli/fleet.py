@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 
 from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.fleets.fleet import fleet as fleet_found
-from pierburg_ros.fleets.run import Report
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 
 
@@ -60,7 +50,11 @@ def fleet(
     report of each recording below it. Called again it diagnoses only what is new.
     """
     limits = limits_of(limit)
-    with shown_progress() as report:
+    with progress() as show:
+
+        def report(stage: str, done: int, total: int, last: str) -> None:
+            show(Step(stage, done, total, what=last.rpartition("/")[2]))
+
         found = fleet_found(
             recordings,
             output,
@@ -100,25 +94,3 @@ def limits_of(options: Sequence[str] | None) -> dict[str, float]:
                 f"--limit found {option!r}, expected NAME=VALUE. Write --limit armature_resistance=5.0."
             ) from None
     return limits
-
-
-@contextmanager
-def shown_progress() -> Iterator[Report]:
-    """A bar on stderr that says what runs, how much of it is done, and how long the rest will take."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[last]}"),
-    )
-    with Progress(*columns, console=terminal(stderr=True), transient=True) as bar:
-        tasks: dict[str, TaskID] = {}
-
-        def report(stage: str, done: int, total: int, last: str) -> None:
-            if stage not in tasks:
-                tasks[stage] = bar.add_task(stage, total=total, last="")
-            bar.update(tasks[stage], completed=done, total=total, last=last.rpartition("/")[2])
-
-        yield report

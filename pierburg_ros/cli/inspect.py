@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -27,7 +27,6 @@ SPANS = 5
 
 def inspect(
     recording: Annotated[Path, typer.Argument(help="MCAP, rosbag2 directory or CSV.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     write_signals: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a signal map of what was guessed, to edit.")
     ] = None,
@@ -35,7 +34,7 @@ def inspect(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+) -> dict[str, Any]:
     """Show the topics of a recording: types, rates, ranges, losses, clocks, what each is read as and could be.
 
     --write-signals FILE writes a signal map with these guesses, which every command takes with --signals.
@@ -43,10 +42,12 @@ def inspect(
     found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
     if write_signals is not None:
         write(write_signals, found.signals)
-    if as_json:
-        print(json.dumps(found.as_mapping(), indent=1, allow_nan=False))
-        return
-    console = terminal()
+    shown(terminal(), recording, found, actuator, write_signals)
+    return found.as_mapping()
+
+
+def shown(console: Console, recording: Path, found: Inspection, actuator: str | None, written: Path | None) -> None:
+    """Print what was found, what it is read as, and what to do next."""
     if found.recording is not None and found.recording.warning:
         console.print(found.recording.warning, soft_wrap=True)
     console.print(table(found), soft_wrap=True)
@@ -54,9 +55,9 @@ def inspect(
     console.print(read_as(found), soft_wrap=True)
     if found.recording is not None and actuator is not None:
         faults_first(console, [found.recording], Model.nominal(read_actuator(actuator)))
-    if write_signals is not None:
+    if written is not None:
         console.print(
-            f"{write_signals}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True
+            f"{written}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True
         )
     elif found.recording is None:
         advice = f"Write a signal map to edit: pierburg inspect {recording} --write-signals signals.yaml"

@@ -7,17 +7,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 
 from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
+from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.proof import document, run
@@ -36,7 +29,7 @@ def prove(
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
-) -> None:
+) -> object:
     """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
@@ -47,42 +40,34 @@ def prove(
     if over_graph:
         require_ros()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=terminal(stderr=True),
-    ) as progress:
-        reporter = Reporter(progress, plan.size)
+    with progress() as show:
+        reporter = Reporter(show)
         command = None if generate_only else DIAGNOSE
         results = run.prove(output, plan, workers=jobs, scheduler=scheduler, command=command, report=reporter)
     if generate_only:
         terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
-        return
+        return {"trials": str(output / "trials")}
     done = document.Run(results, plan)
     document.write(done, output, docs)
     terminal().print(summary(done), f"Results in {output}: proof.md, results.json")
+    return (output / "results.json").read_text(encoding="utf-8")
 
 
 class Reporter:
     """Shows how far a run is, and how it stands."""
 
-    def __init__(self, progress: Progress, total: int) -> None:
-        self.progress = progress
-        self.task = progress.add_task("blind trials", total=total)
+    def __init__(self, show: Tell) -> None:
+        self.show = show
         self.right = self.alarms = 0
-        self.description = "recording"
+        show(Step("blind trials"))
 
     def __call__(self, done: int, total: int, last: dict[str, Any] | NotRecorded | None) -> None:
         if isinstance(last, NotRecorded):
-            self.progress.console.print(f"Not recorded, left out: {last}", style="yellow")
+            terminal(stderr=True).print(f"Not recorded, left out: {last}", soft_wrap=True)
         elif last is not None:
             self.right += last["right"]
             self.alarms += last["false_alarm"]
-            self.description = f"{self.right} right, {self.alarms} false alarms"
-        self.progress.update(self.task, completed=done, total=total, description=self.description)
+        self.show(Step("blind trials", done, total, f"{self.right} right, {self.alarms} false alarms"))
 
 
 def summary(done: document.Run) -> Table:

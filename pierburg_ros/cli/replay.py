@@ -11,6 +11,7 @@ from rich.table import Table
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
@@ -24,7 +25,8 @@ def replay(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+    rerun: RerunOption = None,
+) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
@@ -33,10 +35,13 @@ def replay(
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
+    if rerun:
+        comparison.write_rerun(rerun)
     console = terminal()
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)
     console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    return comparison.to_json()
 
 
 def summary(result: Result) -> Table:

@@ -14,7 +14,7 @@ from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import search
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
@@ -53,7 +53,8 @@ def diagnose(
     found = search(data, nominal, progress, jobs, deadline=deadline)
     rest = None
     if verdict_on(found.chosen) == "unexplained":
-        rest = deadline.attempt(lambda: remainder(found, progress, jobs, deadline), unexamined(found))
+        tell = staged(progress, "what remains")
+        rest = deadline.attempt(lambda: remainder(found, tell, jobs, deadline), unexamined(found))
     conclusion = conclude(found, rest)
     parts = deadline.attempt(
         lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)

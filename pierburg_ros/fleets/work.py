@@ -87,7 +87,7 @@ def _said(found: Diagnosis, recording: Recording) -> dict[str, Any]:
     ]
     return {
         "problem": None,
-        "begun": recording.begun,
+        "begun": _begun(recording),
         "duration": recording.duration,
         "samples": int(recording.time.size),
         "temperature": _mean(recording.temperature),
@@ -115,6 +115,11 @@ def _finding(
     low, high = ends or (None, None)
     numbers = {"value": value, "low": low, "high": high, "confidence": confidence}
     return {"kind": kind, "name": name, "unit": unit, "identifiable": identifiable, **numbers}
+
+
+def _begun(recording: Recording) -> float | None:
+    """When the first sample was sent, as its file tells [s since 1970]; None where it does not."""
+    return None if recording.file_times is None else 1e-9 * float(recording.file_times.publish_time[0])
 
 
 def _mean(channel: Channel | None) -> float | None:

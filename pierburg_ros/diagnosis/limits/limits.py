@@ -10,7 +10,7 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -98,8 +98,10 @@ def limits(
     estimator, base = _base(found, final)
     cases = [case for case in _cases(found, final) if case.variant.effect not in final.explanation.effects]
 
+    tell = staged(progress, "what is ruled out", len(cases))
+
     def limit(case: _Case) -> tuple[_Case, float]:
-        progress(f"limit of {case.variant.effect}")
+        tell(f"limit of {case.variant.effect}")
         return case, _linear(estimator, base, case)
 
     weakest: dict[tuple[str, str], tuple[_Case, float]] = {}

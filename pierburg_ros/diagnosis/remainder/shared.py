@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.diagnosis.search.race import ROUNDS
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
