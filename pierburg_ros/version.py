@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -11,7 +10,6 @@ DIAGNOSING = ("actuators", "audit", "diagnosis", "effects", "estimation", "plant
 """Folders whose sources a diagnosis depends on."""
 
 
-@cache
 def source_version(package: Path = PACKAGE) -> str:
     """Digest of the sources that a diagnosis depends on."""
     digest = hashlib.sha256()

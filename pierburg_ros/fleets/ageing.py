@@ -57,10 +57,11 @@ class Ageing:
     @property
     def change(self) -> float:
         """Change by its trend over the time of its course, as a share of its size there; 0 without a line."""
-        if self.line is None:
-            return 0.0
-        size = max(abs(self.course.nominal), float(np.max(np.abs(self.course.value))), 1e-300)
-        return self.line.slope * float(np.ptp(self.course.time)) / size
+        return 0.0 if self.line is None else self.share(self.line.slope * float(np.ptp(self.course.time)))
+
+    def share(self, change: float) -> float:
+        """A change in its unit as a share of its nominal value, or of its largest where that is more."""
+        return change / max(abs(self.course.nominal), float(np.max(np.abs(self.course.value))), 1e-300)
 
 
 def ageing(courses: Sequence[Course], limits: Mapping[str, float], now: float) -> list[Ageing]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 
@@ -11,6 +11,8 @@ from pierburg_ros.fleets.ageing import Ageing
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.pages.numbers import interval, value, words
 
+KINDS = ("a limit", "a trend", "a step", "unlike the rest", "nothing stands out")
+"""The kinds of reason to look at a unit."""
 MONTH = 365.25 / 12.0
 """Days of a month, in which changes are told."""
 
@@ -19,12 +21,13 @@ MONTH = 365.25 / 12.0
 class Attention:
     """A unit with the reason to look at it, and how urgent that is: the larger the earlier.
 
-    The first number of `urgency` is the kind of reason: 4 a limit reached or to be reached, 3 a trend, 2 a step,
-    1 unlike the rest, 0 none.
+    The first number of `urgency` is 3 for a limit reached or to be reached, 2 for a change, 1 for a unit unlike the
+    rest, 0 for none; `kind` says it in words.
     """
 
     unit: str
     urgency: tuple[int, float]
+    kind: str
     why: str
 
 
@@ -37,27 +40,32 @@ def ranked(recordings: Sequence[Examined], known: Sequence[Ageing]) -> list[Atte
 
 def attention(unit: str, known: Iterable[Ageing]) -> Attention:
     """The most urgent that is known of one unit."""
-    reasons = [(urgency, why) for each in known for urgency, why in _reasons(each)]
+    reasons = [reason for each in known for reason in _reasons(each)]
     if not reasons:
-        return Attention(unit, (0, 0.0), "nothing changes and nothing is unlike the rest, as far as can be told")
-    (urgency, why) = max(reasons)
-    return Attention(unit, urgency, why)
+        return Attention(
+            unit, (0, 0.0), KINDS[-1], "nothing changes and nothing is unlike the rest, as far as can be told"
+        )
+    return Attention(unit, *max(reasons))
 
 
-def _reasons(each: Ageing) -> Iterable[tuple[tuple[int, float], str]]:
+def _reasons(each: Ageing) -> Iterator[tuple[tuple[int, float], str, str]]:
     quantity = words(each.course.quantity)
     if each.forecast is not None and each.forecast.reached:
-        yield (4, math.inf), f"its {quantity} is beyond the limit of {each.forecast.limit:g} {each.course.unit}"
+        yield (
+            (3, math.inf),
+            KINDS[0],
+            f"its {quantity} is beyond the limit of {each.forecast.limit:g} {each.course.unit}",
+        )
     elif each.forecast is not None and each.changes and math.isfinite(each.forecast.last):
-        yield (4, -each.forecast.first), f"its {quantity} {_changing(each)} and {_reaching(each)}"
+        yield (3, -each.forecast.first), KINDS[0], f"its {quantity} {_changing(each)} and {_reaching(each)}"
     if each.changes:
-        yield (3, abs(each.change)), f"its {quantity} {_changing(each)}"
+        yield (2, abs(each.change)), KINDS[1], f"its {quantity} {_changing(each)}"
     if each.stepped and each.step is not None:
-        yield (2, -each.step.chance), f"its {quantity} {_stepping(each)}"
+        yield (2, abs(each.share(each.step.size))), KINDS[2], f"its {quantity} {_stepping(each)}"
     if each.differs and each.away is not None:
         side = "above" if each.away > 0.0 else "below"
         said = f"its {quantity} lies {abs(each.away):.1f} deviations {side} the middle of the other units"
-        yield (1, abs(each.away)), said
+        yield (1, abs(each.away)), KINDS[3], said
 
 
 def _changing(each: Ageing) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.fleets.ageing import Ageing
-from pierburg_ros.fleets.attention import Attention, day
+from pierburg_ros.fleets.attention import KINDS, Attention, day
 from pierburg_ros.fleets.course import DAY, moment
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.fleets.store import RECORDINGS
@@ -17,8 +17,6 @@ from pierburg_ros.pages.numbers import words
 from pierburg_ros.pages.page import inert, written
 from pierburg_ros.pages.provenance import provenance
 
-KINDS = ("nothing stands out", "unlike the rest", "a step", "a trend", "a limit")
-"""What the first number of an urgency means."""
 DIGITS = 6
 """Significant digits of the numbers behind the plots. Chosen: a pixel is a thousandth of a plot; not varied."""
 
@@ -46,7 +44,7 @@ def fleet_page(
         "count": len(recordings),
         "unusable": sum(each.problem is not None for each in recordings),
         "undated": sum(each.problem is None and moment(each) is None for each in recordings),
-        "kinds": KINDS[::-1],
+        "kinds": KINDS,
         "details": inert(details),
         "script": (resources.files("pierburg_ros.fleets") / "fleet.js").read_text(encoding="utf-8"),
     }
@@ -60,7 +58,7 @@ def unit_row(rank: int, each: Attention, own: Sequence[Examined]) -> dict[str, A
     return {
         "rank": rank,
         "unit": each.unit,
-        "kind": KINDS[each.urgency[0]],
+        "kind": each.kind,
         "why": each.why,
         "recordings": len(own),
         "unusable": len(own) - len(verdicts),

@@ -15,12 +15,16 @@ from pierburg_ros.version import source_version
 
 @dataclass(frozen=True)
 class Task:
-    """The model, the time [s] that a diagnosis may take, and how recordings are read: the clock and the signal map."""
+    """The model, the time [s] that a diagnosis may take, and how recordings are read: the clock and the signal map.
+
+    `version` is that of the sources at the start.
+    """
 
     nominal: Model
     budget: float | None
     time: str | None = None
     signals: SignalMap = field(default_factory=SignalMap)
+    version: str = field(default_factory=source_version)
 
     def read(self, path: Path) -> Recording:
         """The recording at `path`."""
@@ -28,5 +32,5 @@ class Task:
 
     def key(self, digest: str) -> str:
         """The name of the result on a recording with this `digest`: of these settings and this version."""
-        settings = (digest, source_version(), self.nominal.text(), self.budget, self.time, self.signals)
+        settings = (digest, self.version, self.nominal.text(), self.budget, self.time, self.signals)
         return hashlib.sha256("\n".join(map(str, settings)).encode()).hexdigest()[:20]
