@@ -100,6 +100,15 @@ COMMANDS = {
             "pierburg diagnose run.mcap -o out --json > found.json",
         ),
     ),
+    "fleet": Command(
+        "Many recordings of many actuators: how each ages, and which to look at first.",
+        examples=(
+            "pierburg fleet recordings -o fleet",
+            "pierburg fleet runs --pattern '{unit}/{date}_*.mcap' -o fleet",
+            "pierburg fleet runs -o fleet --limit armature_resistance=5",
+            "pierburg fleet fleet.csv --scheduler tcp://10.0.0.5:8786 -o f",
+        ),
+    ),
     "inspect": Command(
         "What is in a recording: topics, rates, ranges, losses, clocks, what each could be.",
         examples=(
@@ -244,6 +253,7 @@ experiment = standalone("experiment")
 identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
+fleet = standalone("fleet")
 inspect = standalone("inspect")
 export = standalone("export")
 actuator = standalone("actuator")
