@@ -18,7 +18,7 @@ from pierburg_ros.audit.servo import followed
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.audit.slips import Slip, between_stops, slips
 from pierburg_ros.audit.still import still
-from pierburg_ros.audit.timing import early, shift
+from pierburg_ros.audit.timing import early, shift, wandering
 from pierburg_ros.audit.together import apart
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -70,7 +70,8 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
         return unmoved
     found = followed(signals, given, nominal)
     if not found and given is not None and given.suffices:
-        found = early(Signals.of(recording, TIMED), given) or rescaled(signals, given, nominal)
+        timed = Signals.of(recording, TIMED)
+        found = wandering(timed, given) or early(timed, given) or rescaled(signals, given, nominal)
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []

@@ -261,6 +261,8 @@ class DataQuality(Part):
     """What was moved how far, in words."""
     limits: list[str] = []
     """What these recordings cannot tell for the way they were made, in words."""
+    dirt: list[str] = []
+    """What is missing, was taken out of the signals, or acted on them unmeasured, in words."""
 
 
 class Simulated(Part):

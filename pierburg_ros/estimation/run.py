@@ -17,6 +17,7 @@ from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 
 
@@ -97,15 +98,15 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Pieces]:
-    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut.
+def parts_of(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> tuple[list[Recording], Pieces]:
+    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut: `without` some spans.
 
     One part where nothing is missing; of more, each has at least twice the samples that tell where the shaft stands.
     InputError where none can be simulated.
     """
     fewest = 2 * EVEN
     still = forgets(model.actuator)
-    cut = pieces(from_standstill(recording, model) if still else recording, model)
+    cut = pieces(from_standstill(recording, model) if still else recording, model, without)
     begun = _from_standstills(cut.parts) if still else cut.parts
     parts = [part for part in begun if part.time.size >= fewest or len(cut.parts) == 1]
     if not parts:
@@ -117,8 +118,10 @@ def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Piece
 
 
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
-    """The first part, and the others from where the shaft first rests: where it is in motion after a gap, a simulation
-    that begins a little off would rest elsewhere."""
+    """The first part, and the others from where the shaft first rests.
+
+    Where it is in motion after a gap, a simulation that begins a little off would rest elsewhere.
+    """
     yield parts[0]
     for part in parts[1:]:
         sample = first_rest(part.measured, noise_of(part.time, part.measured))

@@ -104,8 +104,11 @@ def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None
             )
 
 
-def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQuality:
-    """Sampling, saturation, stops and excitation of all `runs`; `noise` is its standard deviation, measured unit."""
+def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
+    """Sampling, saturation, stops and excitation of all `runs`, and the `remarks` on dirty ones.
+
+    `noise` is its standard deviation, measured unit.
+    """
     motions = [motion_of(run, actuator, noise) for run in runs]
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
@@ -120,6 +123,7 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQ
         resolution=_resolution(runs),
         excited=excited(motions),
         limits=[limit.finding for limit in limits_of(runs, actuator, noise)],
+        dirt=list(remarks),
     )
 
 
