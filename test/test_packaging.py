@@ -12,6 +12,8 @@ from zipfile import ZipFile
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.version import Version
 from support.launch_file import launched
 
 from pierburg_ros.control import SETTINGS, Settings
@@ -63,6 +65,47 @@ def test_the_wheels_are_an_extra_and_not_a_requirement():
     assert '"ros": ROS_WHEELS' in SETUP
     required = SETUP.split("install_requires=")[1].split("]")[0]
     assert "ros-" not in required
+
+
+def pinned(file):
+    """Every version that a file of constraints names, by the requirement's name."""
+    found = {}
+    for line in (ROOT / "constraints" / file).read_text().splitlines():
+        if not line.startswith("#"):
+            requirement = Requirement(line)
+            found.setdefault(requirement.name, []).append(requirement)
+    return found
+
+
+def test_the_oldest_versions_tested_are_those_that_are_allowed():
+    """No version without bounds but that of setuptools, which colcon and ROS choose."""
+    lowest = {name: str(each.specifier).removeprefix("==") for name, (each,) in pinned("lowest.txt").items()}
+    allowed = {
+        each.name: str(each.specifier).removeprefix(">=") for each in requirements() if each.name != "setuptools"
+    }
+    assert set(lowest) == set(allowed)
+    assert {name: Version(number) for name, number in lowest.items()} == {
+        name: Version(number) for name, number in allowed.items()
+    }
+
+
+@pytest.mark.parametrize("python", ["3.10", "3.11", "3.12", "3.13"])
+def test_the_newest_versions_tested_are_allowed_and_one_for_each_python(python):
+    newest = pinned("newest.txt")
+    for required in requirements():
+        if required.name != "setuptools":
+            held = [
+                each
+                for each in newest[required.name]
+                if each.marker is None or each.marker.evaluate({"python_version": python})
+            ]
+            assert len(held) == 1
+            assert required.specifier.contains(str(held[0].specifier).removeprefix("=="))
+
+
+def requirements():
+    """What setup.py requires to run."""
+    return [Requirement(line) for line in declared("install_requires", "sdist")]
 
 
 def test_files_that_are_installed_exist():
@@ -147,13 +190,17 @@ def test_a_replay_opens_its_result_where_there_is_one():
 
 def entry_points(*arguments):
     """Executables that setup.py declares when it is called with these arguments."""
+    return dict(line.split(" = ") for line in declared("entry_points['console_scripts']", *arguments))
+
+
+def declared(what, *arguments):
+    """The items that setup.py gives for `what` when it is called with these arguments."""
     code = (
         "import sys; from distutils.core import run_setup; "
-        "print(*run_setup('setup.py', sys.argv[1:], stop_after='init').entry_points['console_scripts'], sep=chr(10))"
+        f"print(*run_setup('setup.py', sys.argv[1:], stop_after='init').{what}, sep=chr(10))"
     )
     command = [sys.executable, "-c", f"import setuptools; {code}", *arguments]
-    lines = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-    return dict(line.split(" = ") for line in lines)
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
 @pytest.mark.parametrize("arguments", [["install", "--record", "files"], ["develop", "--editable"]])

@@ -9,9 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
+<<<<<<< HEAD
 from pierburg_ros.cli import prove_real
 from pierburg_ros.cli.jobs import JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
+=======
+from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
+>>>>>>> fleet
 from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
@@ -34,6 +38,7 @@ def prove(
     only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
     jobs: JobsOption = None,
+    scheduler: SchedulerOption = None,
     generate_only: Annotated[bool, typer.Option(help="Record the trials, diagnose nothing.")] = False,
     over_graph: Annotated[bool, typer.Option(help="Record over the ROS graph, by the three nodes.")] = False,
     dirty: Annotated[
@@ -52,11 +57,15 @@ def prove(
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
+<<<<<<< HEAD
     reports what is done; called again, it goes on.
 
     With --real, effects are put into your own recordings by changing their channels where that is exact; the diagnosis
     has to find them beside all that is really there, against the model of your other recordings. Writes results.jsonl
     and proof-real.md.
+=======
+    reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
+>>>>>>> fleet
     """
     if real is not None:
         why = "with --real, where nothing is recorded. Leave it out"
@@ -73,7 +82,7 @@ def prove(
     with progress() as show:
         reporter = Reporter(show)
         command = None if generate_only else DIAGNOSE
-        results = run.prove(output, plan, workers=jobs, command=command, report=reporter)
+        results = run.prove(output, plan, workers=jobs, scheduler=scheduler, command=command, report=reporter)
     if generate_only:
         terminal().print(f"Recordings with their sealed labels in {output / 'trials'}")
         return {"trials": str(output / "trials")}

@@ -8,7 +8,6 @@ result.json                 the score, and the versions of the sources it belong
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
@@ -42,9 +41,6 @@ GIVEN = {"recording.mcap": "train.mcap"}
 """What a diagnosis gets, under a name that says nothing, and the file of the trial that it is."""
 LONGEST = 900.0  # s, after which a diagnosis counts as failed
 RESULT = "result.json"
-PACKAGE = Path(__file__).parents[1]
-DIAGNOSING = ("actuators", "diagnosis", "effects", "estimation", "plant", "recording")
-"""Folders whose sources a diagnosis depends on."""
 
 
 def prepare(trial: Trial, folder: Path) -> None:
@@ -151,15 +147,6 @@ def result(folder: Path, version: str) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     return label if label["sources"] == version else None
-
-
-def source_version(package: Path = PACKAGE) -> str:
-    """Digest of the sources that a diagnosis depends on."""
-    digest = hashlib.sha256()
-    for part in DIAGNOSING:
-        for file in sorted((package / part).rglob("*.py")):
-            digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def finite(value: Any) -> Any:

@@ -8,12 +8,10 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.estimation.torque_balance import finest
 
 FEWEST = 20
 """Samples from which a rhythm is looked for. Chosen: fewer give each of a dozen frequencies what it wants."""
-SLOW_PART = 0.1
-"""Share of the steps between samples that are finer than the one by which the highest frequency is told. Chosen: the
-slow tenth of a movement shows what the rest is too fast for."""
 OUTLYING = 4.0
 """Torque [median of its magnitude] beyond which it is clipped. Chosen: of white noise 0.7 % lies beyond; a slip does not
 pass for a rhythm."""
@@ -45,13 +43,6 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
         found.append(float(frequencies[np.argmax(height)]))
         left = left - waves(place, left, found[-1:])
     return found
-
-
-def finest(place: Signal) -> float:
-    """The highest frequency [1 / unit of place] that samples at `place` tell: two steps to a period; 0 where all rest."""
-    steps = np.abs(np.diff(place))
-    steps = steps[steps > 0.0]
-    return 0.5 / float(np.quantile(steps, SLOW_PART)) if steps.size else 0.0
 
 
 def spacing(place: Signal) -> float:

@@ -24,9 +24,11 @@ shape of practice-20 out, which made the validation error worse, and those of th
 
 @dataclass(frozen=True)
 class Remainder:
-    """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
-    believed, by id: by what recordings left out say, or by its weight beside what remains; and the rest as a torque
-    over angle and velocity, None where unseen data do not confirm one."""
+    """The model that the rest stands on, with the intervals of its values by dotted name.
+
+    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
+    remains; and the rest as a torque over angle and velocity, None where unseen data do not confirm one.
+    """
 
     base: Fit
     estimates: dict[str, Estimate]

@@ -134,8 +134,10 @@ def summary(
 
 
 def warned(data: Data, verdict: Verdict, text: str) -> str:
-    """The summary after a warning where messages are missing, or, where they may have hidden anything, without a
-    conclusion."""
+    """The summary after a warning where messages are missing.
+
+    Where they may have hidden anything it is without a conclusion.
+    """
     if not data.warnings:
         return text
     warning = " ".join(data.warnings)
