@@ -86,7 +86,7 @@ def _doubt(found: Found, recordings: Sequence[Recording]) -> str | None:
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:
     """The recordings split into samples that train, validate and test; InputError where they cannot be used."""
-    refuse_unusable(recordings, nominal.scales)
+    refuse_unusable(recordings, nominal.actuator)
     actuator = nominal.actuator
     for recording in recordings:
         if recording.quantity != actuator.quantity:

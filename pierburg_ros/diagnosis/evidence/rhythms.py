@@ -84,4 +84,7 @@ def _power(place: Signal, torque: Signal, frequencies: Signal) -> Signal:
 
 def _beside(power: Signal) -> Signal:
     """What is usual beside each frequency: the mean of a spectrum whose median is that of the neighbours."""
-    return np.asarray(median_filter(power, min(2 * NEIGHBOURS * FINE + 1, power.size), mode="nearest")) / math.log(2.0) + 1e-300
+    return (
+        np.asarray(median_filter(power, min(2 * NEIGHBOURS * FINE + 1, power.size), mode="nearest")) / math.log(2.0)
+        + 1e-300
+    )

@@ -61,7 +61,7 @@ def remainder(
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         elif (stood := supported(data, found.nominal, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
-            estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
+            estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         else:
