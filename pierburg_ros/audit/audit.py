@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from pierburg_ros.audit.balance import in_balance
 from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, FEWEST, Explained, explained
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.reach import DOUBTFUL, impossible
@@ -83,8 +84,8 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
     found = undone(named, left, nominal) or undone(tuple(between_stops(signals, nominal)), left, nominal)
     if found:
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
-    moves = given is not None and min(given.share, given.agreement) >= ENOUGH
-    return None if moves else unrelated(signals, given, nominal)
+    moves = given is not None and given.share >= ENOUGH
+    return None if moves and (given.agreement >= ENOUGH or in_balance(signals, nominal)) else unrelated(signals, given, nominal)
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:

@@ -11,14 +11,14 @@ from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.disturbance.apart import apart
 from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
-from pierburg_ros.diagnosis.limits.limits import Limit, limits
+from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
@@ -64,14 +64,15 @@ def diagnose(
     if verdict_on(found.chosen) == "unexplained" and (doubt := _doubt(found, recordings)):
         found, rest = replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
     elif verdict_on(found.chosen) == "unexplained":
-        rest = deadline.attempt(lambda: remainder(found, progress, jobs, deadline), unexamined(found))
+        tell = staged(progress, "what remains")
+        rest = deadline.attempt(lambda: remainder(found, tell, jobs, deadline), unexamined(found))
     conclusion = conclude(found, rest)
     if found.data.disturbed:
         conclusion = replace(conclusion, verdict="unexplained")
     parts = deadline.attempt(
         lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)
     )
-    excluded = deadline.attempt(lambda: limits(found, conclusion.final, progress, jobs, deadline), list[Limit]())
+    excluded = limits(found, conclusion.final, progress, jobs, deadline)
     written = document(found, conclusion, parts, excluded, deadline.stopped)
     shown = signals(longest(data), conclusion)
     result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))

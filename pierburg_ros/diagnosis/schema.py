@@ -234,6 +234,8 @@ class ResidualTorque(Part):
     """Nodes [rad/s]."""
     torque: list[list[float]]
     """At each angle (row) and velocity (column) [N.m], positive closes."""
+    period: float | None = None
+    """Angle [rad] after which it begins again, such as a turn; null where it does not."""
     shape: str = ""
     """What it looks like over angle, velocity and time, in words."""
     over_time: TorqueOverTime | None = None

@@ -29,8 +29,11 @@ KNOWN = 1000
 
 @dataclass(frozen=True)
 class Pieces:
-    """The parts of a recording that can be simulated, times unchanged, and what the losses within them may add to the
-    error, as a standard deviation in the measured unit. `left_out` are spans [s] whose input is not known."""
+    """The parts of a recording that can be simulated, times unchanged.
+
+    `uncertainty` is what the losses within them may add to the error, as a standard deviation in the measured unit;
+    `left_out` are spans [s] whose input is not known.
+    """
 
     parts: list[Recording]
     uncertainty: float

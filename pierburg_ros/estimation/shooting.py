@@ -16,14 +16,12 @@ from scipy.signal import savgol_coeffs
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
+from pierburg_ros.estimation.torque_balance import WINDOW
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
 from pierburg_ros.plant.simulate import simulate_stretches
 from pierburg_ros.recording.noise import noise_of
 
-WINDOW = 11
-"""Samples around a moment from which angle, velocity and acceleration are read. Derived: the velocity at 500 Hz is
-then known to 48 noises per second, and the fit of each stretch finds the rest."""
 FEWEST = 20
 """Samples that a stretch has at least. Derived: its two unknowns then take a tenth of what it tells."""
 TIMES = 2.0
@@ -122,12 +120,12 @@ def stretch_length(time: Signal, measured: Signal, quantity: str) -> float:
     interval = float(np.median(np.diff(time)))
     noise = noise_of(time, measured)
     first, second = (0, 1) if quantity == "speed" else (1, 2)
-    velocity, acceleration = (_spread(measured, order, interval, noise) for order in (first, second))
+    velocity, acceleration = (spread(measured, order, interval, noise) for order in (first, second))
     own = TIMES * velocity / acceleration if acceleration > 0.0 else math.inf
     return min(max(own, FEWEST * interval), float(time[-1] - time[0]))
 
 
-def _spread(measured: Signal, order: int, interval: float, noise: float) -> float:
+def spread(measured: Signal, order: int, interval: float, noise: float) -> float:
     """Standard deviation of a derivative of `measured`, over a window in which the noise is the lesser part of it."""
     window, own, added = WINDOW, 0.0, 1.0
     while added > own and window <= measured.size:
@@ -139,11 +137,14 @@ def _spread(measured: Signal, order: int, interval: float, noise: float) -> floa
 
 
 def _first_samples(time: Signal, length: float) -> np.ndarray:
-    number = np.floor((time - time[0]) / length + 1e-9).astype(int)
-    first = np.flatnonzero(np.diff(number, prepend=-1))
-    long = np.diff(np.append(first, time.size)) >= FEWEST
-    long[0] = True
-    return first[long]
+    """The first sample of each stretch: `length` [s] after the one before, and `FEWEST` samples at least."""
+    first = [0]
+    while True:
+        later = int(np.searchsorted(time, time[first[-1]] + (1.0 - 1e-9) * length))
+        following = max(later, first[-1] + FEWEST)
+        if time.size - following < FEWEST:
+            return np.array(first)
+        first.append(following)
 
 
 def _local(time: Signal, measured: Signal, sample: int, noise: float) -> tuple[float, float, float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.proof.concealment import (
     DIRTY,
     OVER_GRAPH,
@@ -52,6 +52,6 @@ def planned(
     published = OVER_GRAPH if over_graph else DIRTY if dirty else PUBLISHED
     for kind in only:
         if kind not in published:
-            raise InputError(f"found kind {kind!r}, expected one of {', '.join(published)}.")
+            raise InputError(f"found kind {kind!r}, expected one of {', '.join(published)}.{near(kind, published)}")
     chosen = {kind: count for kind, count in published.items() if not only or kind in only}
     return Plan(chosen if trials is None else dict.fromkeys(chosen, trials), seed, over_graph, dirty)

@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
 from pierburg_ros.estimation.explanation import Explanation

@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
 from pierburg_ros.diagnosis.remainder.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
@@ -24,9 +24,11 @@ shape of practice-20 out, which made the validation error worse, and those of th
 
 @dataclass(frozen=True)
 class Remainder:
-    """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
-    believed, by id: by what recordings left out say, or by its weight beside what remains; and the rest as a torque
-    over angle and velocity, None where unseen data do not confirm one."""
+    """The model that the rest stands on, with the intervals of its values by dotted name.
+
+    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
+    remains; and the rest as a torque over angle and velocity, None where unseen data do not confirm one.
+    """
 
     base: Fit
     estimates: dict[str, Estimate]

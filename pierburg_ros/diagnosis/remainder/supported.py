@@ -10,8 +10,8 @@ from pierburg_ros.diagnosis.remainder.scored import Scored, scored, settled
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
-from pierburg_ros.diagnosis.search.search import Progress
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
-from pierburg_ros.diagnosis.limits.limits import Limit
+from pierburg_ros.diagnosis.limits.limits import Limit, Limits
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
 from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
@@ -54,7 +52,7 @@ from pierburg_ros.plant import Model
 
 
 def document(
-    found: Found, conclusion: Conclusion, parts: Shares, limits: Sequence[Limit], stopped: bool = False
+    found: Found, conclusion: Conclusion, parts: Shares, limits: Limits, stopped: bool = False
 ) -> Diagnosis:
     """The whole document; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
@@ -82,13 +80,16 @@ def document(
         fit=fit,
         candidates=candidates(found, conclusion),
         not_testable=hidden,
-        ruled_out=[ruled_out(limit, actuator) for limit in limits],
+        ruled_out=[ruled_out(limit, actuator) for limit in limits.found],
         remaining=remaining(data, conclusion, parts),
         excluded=excluded(data),
         cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
         data_quality=quality.data_quality(data.runs, actuator, data.noise, (*data.warnings, *data.remarks)),
-        advice=words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
+        advice=[
+            *words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
+            *words.untested(limits.untested),
+        ],
     )
 
 
@@ -286,7 +287,7 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
     """What is left as a torque over angle and velocity, and over time."""
     if shape is None or shape.model.residual_torque is None:
         return None
-    grid = {key: np.asarray(shape.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    grid = {key: np.asarray(values).tolist() for key, values in shape.model.residual_torque.items()}
     time, torque = shape.over_time
     return ResidualTorque(
         **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())
