@@ -18,6 +18,7 @@ COMMANDS = (
     "identify",
     "replay",
     "diagnose",
+    "fleet",
     "inspect",
     "export",
     "actuator",
@@ -47,8 +48,10 @@ ROS_WHEELS = [
     "ros-jazzy-lifecycle-msgs",
 ]
 MUJOCO = ["mujoco>=3.13; python_version >= '3.11'"]
+FLEET = ["dask", "distributed", "pyarrow", "fsspec", "pandas"]
 TEST_TOOLS = [
     *MUJOCO,
+    *FLEET,
     "pytest",
     "pytest-rerunfailures",
     "pytest-xdist",
@@ -59,7 +62,8 @@ TEST_TOOLS = [
     "scikit-fuzzy",
     "networkx",
     "packaging",
-    "pandas",
+    "polars",
+    "duckdb",
 ]
 
 DOCS = ["sphinx", "myst-parser", "furo"]
@@ -81,6 +85,8 @@ setup(
             "cli/*.yaml",
             "comparison/*.html",
             "diagnosis/report/*.html",
+            "fleets/*.html",
+            "fleets/*.js",
             "identification/*.html",
             "pages/*.css",
             "pages/*.html",
@@ -119,6 +125,7 @@ setup(
         "test": TEST_TOOLS,
         "docs": DOCS,
         "tables": ["pandas"],
+        "fleet": FLEET,
         "mujoco": MUJOCO,
         "rerun": ["rerun-sdk>=0.24"],
     },

@@ -17,6 +17,8 @@ ALLOWED = {
     "processes": {"errors"},
     "deadline": set(),
     "workers": {"errors", "deadline"},
+    "version": set(),
+    "executors": {"errors", "processes", "version", "workers"},
     "intake": {"errors"},
     "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
@@ -34,13 +36,25 @@ ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
 ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
-ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
+ALLOWED["proof"] = (
+    ALLOWED["diagnosis"]
+    | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
+    | {
+        "executors",
+        "version",
+    }
+)
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["viewers"] = {"errors", "arrays", "recording"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export", "viewers"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers", "viewers"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "version"} | {
+    "identification",
+    "export",
+    "viewers",
+}
+ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers"}
 ALLOWED["__main__"] = {"cli"}
-ALLOWED["__init__"] = {"errors", "library", "recording"}
+ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "diagnosis": {
@@ -74,7 +88,11 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set(), "dirt": set()},
+    "proof": {
+        "dirt": set(),
+        "formulation": set(),
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+    },
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},

@@ -8,7 +8,7 @@ from pathlib import Path
 FOLDER = Path(__file__).parent
 sys.path[:0] = [str(FOLDER.parents[1]), str(FOLDER.parent)]
 
-from reference import commands, document, parameters, topics
+from reference import commands, document, parameters, topics  # noqa: E402
 
 WRITTEN = {
     "commands.md": commands.page,

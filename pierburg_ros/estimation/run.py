@@ -12,6 +12,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.estimation.shooting import Shooting, forgets, stretch_length
+from pierburg_ros.estimation.torque_balance import ahead, goes_round, recorded_lag
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
@@ -37,7 +38,7 @@ class Run:
     explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
     `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
-    again and again.
+    again and again. `input_lag` [s] is that of a filter behind which the input was recorded, taken out of `inputs`.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Run:
     decoder: Model | None = None
     number: int = 0
     shooting: Shooting | None = None
+    input_lag: float = 0.0
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -154,9 +156,12 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
         shooting = Shooting.of(recording.time, recording.measured, length)
     start = InitialState.of(recording.time, recording.measured)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
+    inputs, lag = inputs_in_force(recording, start, model), 0.0
+    if shooting is not None and goes_round(model, recording.measured, recording.quantity):
+        lag = recorded_lag(model, inputs, recording.time, recording.measured)
     return Run(
         recording.name,
-        inputs_in_force(recording, start, model),
+        ahead(inputs, lag),
         recording.time,
         recording.measured,
         recording.quantity,
@@ -166,6 +171,7 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
         Model.nominal(actuator) if decodes else None,
         number,
         shooting,
+        lag,
     )
 
 
