@@ -14,7 +14,7 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
 from pierburg_ros.estimation.least_squares import BRIEF, FULL, minimise
 
-BEGUN = 6
+BEGUN = 12
 """Iterations after which a fit is given up that leaves too much. Work: not varied."""
 HOPE = 4.0
 """Mean square of forgiven residuals up to which it goes on. Work: at its end it is 0.9; those that came there had less
