@@ -63,7 +63,7 @@ def prove(
         why = "with --real, where nothing is recorded. Leave it out"
         refuse(why, {"--generate-only": generate_only, "--over-graph": over_graph, "--dirty": dirty})
         machine = prove_real.machine(real, actuator, model, signals, topic, time)
-        return prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
+        return prove_real.prove(machine, output, only or [], level or [], trials, jobs, scheduler, budget, docs)
     given: dict[str, object] = {"--level": level, "--budget": budget, "--actuator": actuator, "--model": model}
     given |= {"--signals": signals, "--topic": topic, "--time": time}
     refuse("without --real, expected the folder of recordings that it is about", given)

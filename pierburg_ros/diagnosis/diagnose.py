@@ -14,11 +14,13 @@ from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
+from pierburg_ros.diagnosis.remainder.turn import has_overtones
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
@@ -66,8 +68,8 @@ def diagnose(
     )
     excluded = limits(found, conclusion.final, progress, jobs, deadline)
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    shown = signals(longest(data), conclusion)
-    result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
+    shown = signals(longest(found.data), conclusion)
+    result = Result(written, conclusion.model, found.data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result
 
 
@@ -80,7 +82,9 @@ def examined(
     deadline: Deadline,
 ) -> tuple[Found, Remainder | None]:
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
-    found, single = search(data, nominal, progress, jobs, deadline=deadline), len(recordings) == 1
+    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
+    beam = Beam(depth=0) if has_overtones(data, nominal) else None
+    found, single = search(data, nominal, progress, jobs, beam, deadline), len(recordings) == 1
     if single and verdict_on(found.chosen) == "unexplained":
         tell = staged(progress, "disturbances")
         found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
@@ -94,7 +98,7 @@ def examined(
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:
     """The recordings split into samples that train, validate and test; InputError where they cannot be used."""
-    refuse_unusable(recordings, nominal.scales)
+    refuse_unusable(recordings, nominal.actuator)
     actuator = nominal.actuator
     for recording in recordings:
         if recording.quantity != actuator.quantity:

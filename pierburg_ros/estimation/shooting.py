@@ -89,7 +89,7 @@ class Shooting:
         if quantity != "speed":
             return value, self.rate * angle_per_unit(model), self.level_error * scale, self.rate_error * scale
         angle = turned(model, time, measured, quantity)[self.first]
-        return angle, value, np.full(value.size, UNKNOWN_ANGLE), self.level_error * scale
+        return angle, value, np.full(value.size, UNKNOWN_ANGLE * model.scales.angle), self.level_error * scale
 
     def _move(self, residual: Signal, by_angle: Signal, by_velocity: Signal, noise: float) -> Signal:
         """Least-squares move of each beginning, in its errors, shape (2, stretches)."""
@@ -105,9 +105,10 @@ class Shooting:
         return np.asarray(np.add.reduceat(np.nan_to_num(values, nan=1e6), self.first))
 
 
-UNKNOWN_ANGLE = 0.1
-"""Angle [rad] by which the beginning of a stretch may be off where only the speed is measured. Chosen: an angle that
-matters shows in the speed, and the fit may move it by several times as much; not varied."""
+UNKNOWN_ANGLE = 0.064
+"""By how much the beginning of a stretch may be off where only the speed is measured, as a share of the travel or what
+stands in its place. Chosen: 0.1 rad for a pendulum; an angle that matters shows in the speed, and the fit may move it
+by several times as much; not varied."""
 
 
 def forgets(actuator: Actuator) -> bool:

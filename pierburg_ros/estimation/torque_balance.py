@@ -18,6 +18,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import motor_torque
+from pierburg_ros.plant.torques.missing import missing
 
 WINDOW = 11
 """Samples around a moment from which angle, velocity and acceleration are read. Derived: the velocity at 500 Hz is
@@ -28,20 +29,21 @@ slow tenth of a movement shows what the rest is too fast for."""
 TURN = 2.0 * math.pi
 """Angle after which a shaft is where it was [rad]."""
 WHOLE = 0.9
-"""Share of a turn that a shaft has to be seen in for a map of it. Chosen: of what is left a tenth is told by the rest."""
+"""Share of a turn that a shaft has to be seen in for a map of it. Chosen: the rest of its orders tell the tenth."""
 FALSE_ALARM = 0.01
 """Chance at which a torque that wanders without a rhythm is given one. Chosen: one recording in a hundred."""
 NEIGHBOURS = 12
-"""Orders to either side that say what a spectrum is beside one of them. Chosen: 24 say it to 30 %; not varied."""
+"""Orders to either side that say what a spectrum is beside one of them. Chosen: few enough for it to be even there; not
+varied."""
 MOST = 128
 """Highest order that is looked for. Chosen: twice the 64 poles and slots at which the search of a ripple began."""
 SAMPLES = 8
 """Samples of the motion for each unknown, at least. Chosen: those beside each other share most of their window."""
 ROUNDING = 1e-9
-"""What is added to the diagonal of the normal equations. Derived: far above rounding, far below what any column adds."""
+"""What is added to the diagonal of the normal equations. Derived: far above rounding, far below a column."""
 OUTLYING = 12.0
-"""Error, over the median of all, beyond which a sample is left out. Chosen: three times where white noise ends; a shaft
-that is caught in motion or knocked lies beyond, one that slips does not."""
+"""Error, over the median of all, beyond which a sample is left out. Chosen: three times where white noise ends; a
+shaft that is caught in motion or knocked lies beyond, one that slips does not."""
 LATE = 0.5
 """Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
 controller whose current is recorded behind one it is a third to a ninth (n = 3)."""
@@ -60,6 +62,12 @@ class Balance:
     sines: Signal
     left: float
 
+    @property
+    def lesser(self) -> Balance:
+        """The same without the strongest order."""
+        rest = np.delete(np.arange(self.orders.size), np.argmax(np.hypot(self.cosines, self.sines)))
+        return replace(self, orders=self.orders[rest], cosines=self.cosines[rest], sines=self.sines[rest])
+
     def torque(self, angle: Signal) -> Signal:
         """Load torque over a turn [N.m] at each `angle` [rad], positive closes, its mean left out."""
         turns = np.outer(angle, self.orders)
@@ -68,7 +76,8 @@ class Balance:
 
 @dataclass(frozen=True)
 class _Motion:
-    """Samples at even steps: time [s], angle [rad], velocity, acceleration, motor torque [N.m] and its rate."""
+    """Samples at even steps: time [s], angle [rad], velocity, acceleration, motor torque beyond the known load [N.m],
+    and the rate of all of it; whether a `weight` hangs on the shaft."""
 
     time: Signal
     angle: Signal
@@ -76,9 +85,11 @@ class _Motion:
     acceleration: Signal
     torque: Signal
     rate: Signal
+    weight: bool
 
     def kept(self, which: Flags) -> _Motion:
-        return _Motion(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+        signals = ("time", "angle", "velocity", "acceleration", "torque", "rate")
+        return replace(self, **{name: getattr(self, name)[which] for name in signals})
 
 
 def goes_round(model: Model, measured: Signal, quantity: str) -> bool:
@@ -117,7 +128,7 @@ def over_a_turn(model: Model, inputs: Inputs, time: Signal, measured: Signal, se
 
 
 def finest(place: Signal) -> float:
-    """The highest frequency [1 / unit of place] that samples at `place` tell: two steps to a period; 0 where all rest."""
+    """The highest frequency [1 / unit of place] that samples at `place` tell, two to a period; 0 where it rests."""
     steps = np.abs(np.diff(place))
     steps = steps[steps > 0.0]
     return 0.5 / float(np.quantile(steps, SLOW_PART)) if steps.size else 0.0
@@ -129,12 +140,20 @@ def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Mo
     even = np.arange(time[0], time[-1], step)
     shown = np.interp(even, time, decoded(model, measured, "position"))
     driven = np.interp(even, time, motor_torque(model, inputs, time))
+    still = np.zeros(even.size)
+    lacking = missing(model.record()[0], driven, even, shown, still, still)
 
     def derived(values: Signal, order: int) -> Signal:
         return np.asarray(savgol_filter(values, WINDOW, 3, deriv=order, delta=step))[:: WINDOW // 4]
 
     return _Motion(
-        even[:: WINDOW // 4], derived(shown, 0), derived(shown, 1), derived(shown, 2), derived(driven, 0), derived(driven, 1)
+        time=even[:: WINDOW // 4],
+        angle=derived(shown, 0),
+        velocity=derived(shown, 1),
+        acceleration=derived(shown, 2),
+        torque=derived(lacking, 0),
+        rate=derived(driven, 1),
+        weight=model.values.get("gravity_torque", 0.0) != 0.0,
     )
 
 
@@ -144,6 +163,9 @@ def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tup
     Also which samples are `inside`, and not left out. Those are the given ones, or those that lie close enough.
     """
     always = [np.ones(motion.time.size), np.sign(motion.velocity), motion.velocity, motion.acceleration]
+    if motion.weight:
+        # its own or its axis may be other than described: once in a turn
+        always += [np.cos(motion.angle), np.sin(motion.angle)]
     known = np.stack([*always, *([-motion.rate] if lagged else [])], axis=1)
     first, highest = known.shape[1], min(int(TURN * finest(motion.angle)), MOST)
     turns = np.outer(motion.angle, np.arange(1, highest + NEIGHBOURS + 1))
@@ -154,13 +176,15 @@ def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tup
         found = _least_squares(known[kept], motion.torque[kept])
         left = motion.torque - known @ found
         kept = np.abs(left) <= OUTLYING * np.median(np.abs(left)) if inside is None else inside
-        order = _next_order(left[kept] @ cosines[kept], left[kept] @ sines[kept], highest, orders)
+        taken = [*orders, *([1] if motion.weight else [])]
+        order = _next_order(left[kept] @ cosines[kept], left[kept] @ sines[kept], highest, taken)
         if order == 0 or known.shape[1] > motion.time.size // SAMPLES:
             break
         orders.append(order)
         known = np.concatenate([known, cosines[:, order - 1 : order], sines[:, order - 1 : order]], axis=1)
     lag = float(found[first - 1]) if lagged else 0.0
-    return Balance(lag, np.array(orders, dtype=np.int64), found[first::2], found[first + 1 :: 2], float(np.std(left[kept]))), kept
+    cosine, sine = found[first::2], found[first + 1 :: 2]
+    return Balance(lag, np.array(orders, dtype=np.int64), cosine, sine, float(np.std(left[kept]))), kept
 
 
 def _least_squares(known: Signal, wanted: Signal) -> Signal:
@@ -171,12 +195,21 @@ def _least_squares(known: Signal, wanted: Signal) -> Signal:
     return np.asarray(np.linalg.solve(gram, scaled.T @ wanted) / scale)
 
 
-def _next_order(cosine: Signal, sine: Signal, highest: int, orders: list[int]) -> int:
-    """The order that stands out most from those beside it, 0 where chance would raise one so far."""
+def _next_order(cosine: Signal, sine: Signal, highest: int, taken: list[int]) -> int:
+    """The order, none that is `taken`, that stands out most from those beside it; 0 where chance raises one so far."""
     power = np.square(cosine) + np.square(sine)
     usual = median_filter(power, 2 * NEIGHBOURS + 1, mode="nearest") / math.log(2.0)
     height = power / (usual + 1e-300)
     height[highest:] = 0.0
-    height[np.array(orders, dtype=int) - 1] = 0.0
+    height[np.array(taken, dtype=int) - 1] = 0.0
     best = int(np.argmax(height))
-    return best + 1 if highest > 0 and height[best] >= math.log(highest / FALSE_ALARM) else 0
+    return best + 1 if highest > 0 and height[best] >= _least_height(highest) else 0
+
+
+def _least_height(orders: int) -> float:
+    """How far above its neighbours chance raises one of so many `orders` once in 1 / `FALSE_ALARM`.
+
+    The power of an order without a rhythm is distributed exponentially, and its ratio to the mean of n others exceeds z
+    with the chance (1 + z / n)^-n. A median of twice as many tells that mean about as well.
+    """
+    return NEIGHBOURS * ((orders / FALSE_ALARM) ** (1.0 / NEIGHBOURS) - 1.0)
