@@ -85,13 +85,15 @@ def examined(
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
     beam = Beam(depth=0) if has_overtones(data, nominal) else None
     found, single = search(data, nominal, progress, jobs, beam, deadline), len(recordings) == 1
-    if single and verdict_on(found.chosen) == "unexplained":
-        tell = staged(progress, "disturbances")
-        found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
     if verdict_on(found.chosen) != "unexplained":
         return found, None
     if single and (doubt := rounded(found, recordings[0])):
         return replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
+    if single:
+        tell = staged(progress, "disturbances")
+        found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
+        if verdict_on(found.chosen) != "unexplained":
+            return found, None
     tell = staged(progress, "what remains")
     return found, deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
 
