@@ -59,10 +59,12 @@ FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "diagnosis": {
         "schema": set(),
+        "cleaning": set(),
         "evidence": {"schema"},
         "search": {"evidence"},
         "location": {"schema", "evidence"},
         "remainder": {"evidence", "search"},
+        "disturbance": {"search", "remainder"},
         "limits": {"search"},
         "verdict": {"schema", "search", "remainder"},
         "result": {"schema"},
@@ -86,7 +88,11 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set()},
+    "proof": {
+        "dirt": set(),
+        "formulation": set(),
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+    },
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},

@@ -23,8 +23,8 @@ PICTURES = {"report.png": "Missing physics", "report_signals.png": "Before and a
 WIDTH, COLOURS = 1200, 64
 
 
-def take(report: Path, folder: Path) -> None:
-    """The pictures of a `report`; the browser's profile is in `folder`."""
+def take(report: Path, output: Path, folder: Path) -> None:
+    """Write the pictures of a `report` to `output`; the browser's profile is in `folder`."""
     sys.path.insert(0, str(ROOT / "test"))
     from support.browser import browser
 
@@ -39,7 +39,7 @@ def take(report: Path, folder: Path) -> None:
             )
             (body,) = page.elements("body")
             picture = Image.open(io.BytesIO(page.picture(body))).convert("RGB")
-            picture.quantize(COLOURS).save(Path(__file__).parent / name, optimize=True)
+            picture.quantize(COLOURS).save(output / name, optimize=True)
 
 
 def main() -> None:
@@ -50,7 +50,7 @@ def main() -> None:
         actuator = ROOT / "examples" / "my_actuator.yaml"
         recording = pr.read(folder / "throttle", signals=SIGNALS)
         pr.diagnose(recording, actuator=actuator).save(folder / "results")
-        take(folder / "results" / "report.html", folder)
+        take(folder / "results" / "report.html", Path(__file__).parent, folder)
 
 
 if __name__ == "__main__":

@@ -9,8 +9,6 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.actuators.writing import description_text
@@ -25,6 +23,8 @@ from pierburg_ros.identification.description.slips import remarks
 from pierburg_ros.identification.description.told import told
 from pierburg_ros.library.output import write_whole
 from pierburg_ros.library.reading import read
+from pierburg_ros.pages.listing import Listing
+from pierburg_ros.pages.numbers import number, unit
 from pierburg_ros.plant import Model
 
 
@@ -85,14 +85,9 @@ def asked(question: Question) -> str:
 def check(console: Console, file: Path) -> dict[str, object]:
     """Print and give derived numbers, remarks, and what a standard excitation of the description would tell."""
     described = read_actuator(str(file))
-    shown = Table(title=Text(f"{described.title}: what the numbers imply"))
-    for heading in ("number", "value", "plausible"):
-        shown.add_column(heading, overflow="fold")
     numbers, found = derived(described), remarks(described)
-    for each in numbers:
-        unit = "" if each.unit == "1" else f" {each.unit}"
-        shown.add_row(each.name, f"{each.value:.4g}{unit}", "yes" if each.plausible else "NO")
-    console.print(shown)
+    rows = [(each.name, number(each.value) + unit(each.unit), "yes" if each.plausible else "NO") for each in numbers]
+    console.print(Listing(("number", "value", "plausible"), rows, f"{described.title}: what the numbers imply"))
     lines = [f"{remark.about}: {remark.what}" for remark in found] or ["Nothing is implausible."]
     console.print("\n".join(lines), soft_wrap=True, markup=False)
     signals = f"{described.input} and {described.quantity.replace('_', ' ')}"

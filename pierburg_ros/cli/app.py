@@ -134,8 +134,13 @@ COMMANDS = {
         examples=("pierburg recover run.mcap", "pierburg recover run.mcap -o whole.mcap"),
     ),
     "prove": Command(
-        "Seeded blind trials of the diagnosis.",
-        examples=("pierburg prove --trials 1 -o proof", "pierburg prove --only backlash --only drift -o proof"),
+        "Seeded blind trials of the diagnosis; known effects put into your own recordings.",
+        examples=(
+            "pierburg prove --trials 1 -o proof",
+            "pierburg prove --only backlash --only drift -o proof",
+            "pierburg prove --real bench/ --actuator my.yaml -o proof",
+            "pierburg prove --real bench/ --model my.yaml --budget 60 -o proof",
+        ),
     ),
     "tune": Command(
         "PIFLC gains and sets for a stated goal over a set of plants.",
@@ -151,8 +156,10 @@ def application(called: str | None = None) -> typer.Typer:
     app.callback()(options)
     for name, command in COMMANDS.items():
         function = command_of(name) if name == called else summary_only
-        added = app.command(name, context_settings=command.settings, short_help=command.summary, epilog=command.epilog)
-        added(function)
+        registered = app.command(
+            name, short_help=command.summary, epilog=command.epilog, context_settings=command.settings
+        )
+        registered(function)
     return app
 
 
@@ -208,8 +215,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
-    """The arguments with an option of `SPREAD` repeated before each of its values: --simulation a b is one of a and one
-    of b. Click has no option with several values."""
+    """The arguments with an option of `SPREAD` repeated before each of its values.
+
+    `--simulation a b` is one of a and one of b. Click has no option with several values.
+    """
     found: list[str] = []
     option = ""
     for argument in arguments:

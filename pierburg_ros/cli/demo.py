@@ -10,7 +10,6 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
@@ -25,6 +24,7 @@ from pierburg_ros.library.diagnosing import Diagnosis
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
 from pierburg_ros.library.reading import read
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
 
@@ -63,7 +63,8 @@ def demo(
             console.print(replayed_bench(folder / "xl330", runs))
         else:
             console.print(f"No measured runs in {real}; name a folder with --real to replay them too.")
-    console.print(f"Results in {output}: replay.html (the loop), diagnosis/report.html (the concealed effect).")
+    files = "replay.html (the loop), diagnosis/report.html (the concealed effect)"
+    console.print(f"Results in {output}: {files}.", soft_wrap=True)
     return {"replay": json.loads(comparison.to_json()), "diagnosis": json.loads(diagnosis.to_json())}
 
 
@@ -124,17 +125,16 @@ def replayed(folder: Path, recording: Path, model: Model) -> Comparison:
     return comparison
 
 
-def replayed_bench(folder: Path, runs: list[Path]) -> Table:
+def replayed_bench(folder: Path, runs: list[Path]) -> Listing:
     """Replay measured runs of the pendulum bench against its Coulomb-and-viscous model, one row each."""
     model = Model.nominal("xl330")
-    table = Table(title=f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
-    for heading in ("run", "RMSE [rad]", "variance explained", "worst stretch [s]"):
-        table.add_column(heading, justify="left" if heading == "run" else "right")
+    rows = []
     for run in runs:
         comparison = compare(run, model)
         comparison.save(folder / run.stem)
-        table.add_row(*bench_row(run, comparison))
-    return table
+        rows.append(bench_row(run, comparison))
+    headings = ("run", "RMSE [rad]", "variance explained", "worst stretch [s]")
+    return Listing(headings, rows, f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
 
 
 def bench_row(run: Path, comparison: Comparison) -> tuple[str, ...]:

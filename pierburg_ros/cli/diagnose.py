@@ -70,9 +70,10 @@ def diagnose(
         diagnosis.write_into(folder)
     if rerun:
         diagnosis.write_rerun(rerun)
-    terminal().print(
-        shown(diagnosis.document),
-        f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png, diagnosis.mcap",
+    console = terminal()
+    console.print(shown(diagnosis.document))
+    console.print(
+        f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png, diagnosis.mcap", soft_wrap=True
     )
     return diagnosis.to_json()
 

@@ -96,4 +96,4 @@ def print_results(console: Console, found: Identification, output: Path) -> None
             f"{found.fitted.covariance.blocks} stretches of it allow. Try pierburg diagnose.",
             soft_wrap=True,
         )
-    console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs")
+    console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs", soft_wrap=True)

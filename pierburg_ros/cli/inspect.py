@@ -8,13 +8,12 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.inspection import Inspection, TopicContent
 from pierburg_ros.recording.inspection import inspect as inspected
@@ -50,7 +49,7 @@ def shown(console: Console, recording: Path, found: Inspection, actuator: str | 
     """Print what was found, what it is read as, and what to do next."""
     if found.recording is not None and found.recording.warning:
         console.print(found.recording.warning, soft_wrap=True)
-    console.print(table(found), soft_wrap=True)
+    console.print(table(found))
     console.print("\n".join(numbers(found)), soft_wrap=True)
     console.print(read_as(found), soft_wrap=True)
     if found.recording is not None and actuator is not None:
@@ -73,14 +72,10 @@ def write(path: Path, text: str) -> None:
         raise InputError(f"{path} exists, expected a new name for the signal map. Choose another.") from None
 
 
-def table(found: Inspection) -> Table:
+def table(found: Inspection) -> Listing:
     """One row a topic."""
-    shown = Table(title=Text(found.name))
-    for heading in ("topic and type", "messages", "range", "missing", "clocks", "read as"):
-        shown.add_column(heading)
-    for topic in found.topics:
-        shown.add_row(*(Text(cell) for cell in row(topic)))
-    return shown
+    headings = ("topic and type", "messages", "range", "missing", "clocks", "read as")
+    return Listing(headings, [row(topic) for topic in found.topics], found.name)
 
 
 def row(topic: TopicContent) -> tuple[str, ...]:

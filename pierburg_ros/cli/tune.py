@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.progress import Step, progress
@@ -27,6 +26,7 @@ from pierburg_ros.control import parameter_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.executors import Lost, ended
 from pierburg_ros.library.output import write_whole
+from pierburg_ros.pages.listing import Listing
 
 
 def tune(
@@ -122,13 +122,12 @@ def heading(goal: Goal, judgement: Judgement) -> list[str]:
     return [line.replace("_", " ") for line in lines]
 
 
-def summary(goal: Goal, judgements: Sequence[Judgement]) -> Table:
+def summary(goal: Goal, judgements: Sequence[Judgement]) -> Listing:
     """Worst step on the plants with stated goals, as shares of the goals."""
-    table = Table(title="Median of the worst step as a share of the goal")
-    for title in ("plant", "controller", *QUANTITIES):
-        table.add_column(title.replace("_", " "))
-    for plant in STATED:
-        for each in judgements:
-            shares = each.shares(plant, goal).max(axis=0)
-            table.add_row(plant, each.name, *(f"{share:.2f}" for share in shares))
-    return table
+    headings = ("plant", "controller", *(name.replace("_", " ") for name in QUANTITIES))
+    rows = [
+        (plant, each.name, *(f"{share:.2f}" for share in each.shares(plant, goal).max(axis=0)))
+        for plant in STATED
+        for each in judgements
+    ]
+    return Listing(headings, rows, "Median of the worst step as a share of the goal")

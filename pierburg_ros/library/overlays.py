@@ -38,8 +38,10 @@ def of_comparison(found: comparison.Comparison) -> Overlay:
 
 
 def of_diagnosis(result: Result, recordings: Sequence[Recording]) -> list[Overlay]:
-    """One for each of the diagnosed recordings, which come first, in their order; without models where signals are
-    at fault and nothing was concluded."""
+    """One for each of the diagnosed recordings, which come first, in their order.
+
+    They are without models where signals are at fault and nothing was concluded.
+    """
     views = result.exhibits.views or [_unconcluded(each) for each in recordings[: len(result.diagnosis.recordings)]]
     return [
         _of_view(view, result.diagnosis, number, times_of(recording))

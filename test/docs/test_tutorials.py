@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+import runpy
 import shutil
 
+import matplotlib.image
+import numpy as np
 import pytest
+from support.browser import CHROMIUM, DRIVER
 from support.documentation import ROOT, blocks, commands, run_shown
 from support.snippets import run
 
@@ -27,6 +31,21 @@ def test_the_story_runs_and_says_what_comes_out(tmp_path, monkeypatch, capsys):
 def test_my_bag_ends_in_a_model_that_mujoco_runs_to_the_noise(tmp_path, monkeypatch, capsys):
     pytest.importorskip("mujoco", minversion="3.13")
     follow("docs/my_bag.md", tmp_path, monkeypatch, capsys)
+    assert (tmp_path / "results/throttle/report.html").exists()
+    if CHROMIUM and DRIVER:
+        the_pictures_of_the_readme_can_be_taken(tmp_path / "results/throttle/report.html", tmp_path)
+
+
+def the_pictures_of_the_readme_can_be_taken(report, folder):
+    """Each shows much, as the kept one does, and is small enough for a first screen."""
+    script = runpy.run_path(str(ROOT / "docs" / "images" / "report.py"))
+    script["take"](report, folder, folder)
+    for name in script["PICTURES"]:
+        assert f"docs/images/{name}" in (ROOT / "README.md").read_text(encoding="utf-8")
+        kept, taken = (matplotlib.image.imread(place / name) for place in (ROOT / "docs" / "images", folder))
+        assert kept.shape == taken.shape
+        assert np.ptp(taken, axis=(0, 1)).max() > 0.5
+        assert (ROOT / "docs" / "images" / name).stat().st_size < 200 * 1024
 
 
 def test_the_readme_goes_the_way_of_my_bag():

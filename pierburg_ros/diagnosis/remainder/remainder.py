@@ -24,9 +24,11 @@ shape of practice-20 out, which made the validation error worse, and those of th
 
 @dataclass(frozen=True)
 class Remainder:
-    """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
-    believed, by id: by what recordings left out say, or by its weight beside what remains; and the rest as a torque
-    over angle and velocity, None where unseen data do not confirm one."""
+    """The model that the rest stands on, with the intervals of its values by dotted name.
+
+    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
+    remains; and the rest as a torque over angle and velocity, None where unseen data do not confirm one.
+    """
 
     base: Fit
     estimates: dict[str, Estimate]
@@ -59,7 +61,7 @@ def remainder(
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         elif (stood := supported(data, found.nominal, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
-            estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
+            estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         else:
