@@ -78,9 +78,8 @@ def prove(
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with progress() as show:
         show(Step("the models of other recordings"))
-        results = run.prove(
-            output, plan, budget or USUAL_BUDGET, workers=jobs, scheduler=scheduler, report=Reporter(show)
-        )
+        reporter = Reporter(show)
+        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, scheduler=scheduler, report=reporter)
     if not results:
         raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
     done = Run(results, plan)

@@ -13,11 +13,13 @@ from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
+from pierburg_ros.diagnosis.remainder.turn import has_overtones
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
@@ -56,7 +58,9 @@ def diagnose(
     data = said_of(each_cleaned, evidence(recordings, nominal))
     data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
-    found = search(data, nominal, progress, jobs, deadline=deadline)
+    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
+    beam = Beam(depth=0) if has_overtones(data, nominal) else None
+    found = search(data, nominal, progress, jobs, beam, deadline)
     if verdict_on(found.chosen) == "unexplained" and len(recordings) == 1:
         before = found
         found = deadline.attempt(lambda: apart(before, recordings[0], progress, jobs, deadline), before)

@@ -38,7 +38,7 @@ class Run:
     explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
     `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
-    again and again. `input_lag` [s] is that of a filter behind which the input was recorded; it is taken out of `inputs`.
+    again and again. `input_lag` [s] is that of a filter behind which the input was recorded, taken out of `inputs`.
     """
 
     name: str

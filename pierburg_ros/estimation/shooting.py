@@ -107,8 +107,8 @@ class Shooting:
 
 UNKNOWN_ANGLE = 0.064
 """By how much the beginning of a stretch may be off where only the speed is measured, as a share of the travel or what
-stands in its place. Chosen: 0.1 rad for a pendulum; an angle that matters shows in the speed, and the fit may move it by
-several times as much; not varied."""
+stands in its place. Chosen: 0.1 rad for a pendulum; an angle that matters shows in the speed, and the fit may move it
+by several times as much; not varied."""
 
 
 def forgets(actuator: Actuator) -> bool:

@@ -29,7 +29,7 @@ slow tenth of a movement shows what the rest is too fast for."""
 TURN = 2.0 * math.pi
 """Angle after which a shaft is where it was [rad]."""
 WHOLE = 0.9
-"""Share of a turn that a shaft has to be seen in for a map of it. Chosen: of what is left a tenth is told by the rest."""
+"""Share of a turn that a shaft has to be seen in for a map of it. Chosen: the rest of its orders tell the tenth."""
 FALSE_ALARM = 0.01
 """Chance at which a torque that wanders without a rhythm is given one. Chosen: one recording in a hundred."""
 NEIGHBOURS = 12
@@ -40,10 +40,10 @@ MOST = 128
 SAMPLES = 8
 """Samples of the motion for each unknown, at least. Chosen: those beside each other share most of their window."""
 ROUNDING = 1e-9
-"""What is added to the diagonal of the normal equations. Derived: far above rounding, far below what any column adds."""
+"""What is added to the diagonal of the normal equations. Derived: far above rounding, far below a column."""
 OUTLYING = 12.0
-"""Error, over the median of all, beyond which a sample is left out. Chosen: three times where white noise ends; a shaft
-that is caught in motion or knocked lies beyond, one that slips does not."""
+"""Error, over the median of all, beyond which a sample is left out. Chosen: three times where white noise ends; a
+shaft that is caught in motion or knocked lies beyond, one that slips does not."""
 LATE = 0.5
 """Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
 controller whose current is recorded behind one it is a third to a ninth (n = 3)."""
@@ -128,7 +128,7 @@ def over_a_turn(model: Model, inputs: Inputs, time: Signal, measured: Signal, se
 
 
 def finest(place: Signal) -> float:
-    """The highest frequency [1 / unit of place] that samples at `place` tell: two steps to a period; 0 where all rest."""
+    """The highest frequency [1 / unit of place] that samples at `place` tell, two to a period; 0 where it rests."""
     steps = np.abs(np.diff(place))
     steps = steps[steps > 0.0]
     return 0.5 / float(np.quantile(steps, SLOW_PART)) if steps.size else 0.0
@@ -196,7 +196,7 @@ def _least_squares(known: Signal, wanted: Signal) -> Signal:
 
 
 def _next_order(cosine: Signal, sine: Signal, highest: int, taken: list[int]) -> int:
-    """The order that stands out most from those beside it, 0 where chance would raise one so far; none that is `taken`."""
+    """The order, none that is `taken`, that stands out most from those beside it; 0 where chance raises one so far."""
     power = np.square(cosine) + np.square(sine)
     usual = median_filter(power, 2 * NEIGHBOURS + 1, mode="nearest") / math.log(2.0)
     height = power / (usual + 1e-300)

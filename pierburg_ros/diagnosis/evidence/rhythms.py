@@ -13,8 +13,8 @@ from pierburg_ros.estimation.torque_balance import finest
 FEWEST = 20
 """Samples from which a rhythm is looked for. Chosen: fewer give each of a dozen frequencies what it wants."""
 OUTLYING = 4.0
-"""Torque [median of its magnitude] beyond which it is clipped. Chosen: of white noise 0.7 % lies beyond; a slip does not
-pass for a rhythm."""
+"""Torque [median of its magnitude] beyond which it is clipped. Chosen: of white noise 0.7 % lies beyond; a slip does
+not pass for a rhythm."""
 FINE = 4
 """Frequencies looked at for each period more over the whole place, and bins of place for each period of the highest.
 Derived: the power half way between two of them is 0.95 of its peak, and that of the highest frequency 0.9."""
@@ -27,9 +27,9 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
     """The frequencies [1 / unit of place] of `torque` at uneven `place` that stand out most, first, at most `most`.
 
     They lie `between` two, above one period over the whole place and below what the samples tell. What is missing also
-    wanders, the more the slower: a rhythm counts by how far it stands out from the frequencies beside it. Each is taken
-    away before the next is looked for (as by Hogbom's CLEAN, Astron. Astrophys. Suppl. 15, 1974), since at uneven places
-    one shows at other frequencies too.
+    wanders, the more the slower: a rhythm counts by how far it stands out from the frequencies beside it. Each is
+    taken away before the next is looked for (as by Hogbom's CLEAN, Astron. Astrophys. Suppl. 15, 1974), since at uneven
+    places one shows at other frequencies too.
     """
     frequencies = _frequencies(place, *between)
     left = clipped(torque) if frequencies.size else torque

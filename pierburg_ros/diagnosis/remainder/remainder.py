@@ -78,8 +78,8 @@ def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
     """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
     if deadline is None or not deadline.stopped:
         return False
-    plain = found.estimator
-    return plain.validation_misfit(plain.restated(stood.scored.fit)) > plain.validation_misfit(found.recalibrated)
+    own = Estimator(found.data, stood.nominal)
+    return own.validation_misfit(stood.scored.fit) > found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

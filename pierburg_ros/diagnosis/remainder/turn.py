@@ -14,6 +14,12 @@ MENTIONED = 4
 """How many orders are told in words. Chosen: a sentence holds no more; the map holds all."""
 
 
+def has_overtones(data: Data, nominal: Model) -> bool:
+    """Whether more than one order of a torque over a turn is seen: more than one effect could be named for."""
+    found = _repeated(data, nominal)
+    return found is not None and found.orders.size > 1
+
+
 def with_lesser_orders(data: Data, nominal: Model) -> Model:
     """`nominal` with all orders of the torque over a turn but the strongest, for which an effect may then be named.
 

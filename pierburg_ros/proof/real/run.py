@@ -92,17 +92,18 @@ def prove(
 ) -> list[dict[str, Any]]:
     """Conduct the trials that are missing and give the results; after SIGINT or SIGTERM, those done by then.
 
-    Results belong to one version of the sources: that at the start. InputError where the recordings cannot be
-    diagnosed at all. The workers of a cluster (`scheduler`) must see the folder `output` under the same path.
+    Results belong to one version of the sources: that at the start. The workers of a cluster (`scheduler`) must see the
+    folder `output` under the same path. InputError where the recordings cannot be diagnosed at all.
     """
     begin(output, plan, budget)
-    bench = Bench(output, source_version(), budget, command)
-    machine, done = plan.machine, 0
+    bench, machine, done = Bench(output.resolve(), source_version(), budget, command), plan.machine, 0
     try:
         if not machine.known:
-            modelled = partial(diagnose_others, bench=bench)
             halves = sorted({trial.half for trial in plan.untouched})
-            list(ended(modelled, [(half, tuple(machine.others(half))) for half in halves], workers, scheduler))
+            asked = [(half, tuple(machine.others(half))) for half in halves]
+            for (half, _), modelled in ended(partial(diagnose_others, bench=bench), asked, workers, scheduler):
+                if isinstance(modelled, Lost):
+                    raise InputError(f"The model for half {half + 1} could not be diagnosed: {modelled.reason}.")
         for stage in plan.stages:
             for _, last in ended(partial(conduct, bench=bench), stage, workers, scheduler):
                 done += 1
