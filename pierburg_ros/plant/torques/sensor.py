@@ -21,6 +21,12 @@ def sensed(p, s):
 
 
 @kernel
+def lead(p):
+    """Time [s] by which a shaft that moves evenly is ahead of what its sensor shows; none where that is a velocity."""
+    return 0.0 if p.sensor == SPEED else p.sensor_lag.time_constant
+
+
+@kernel
 def follow(p, s, duration):
     """Let the moving parts of the sensor follow the shaft, which has gone one way for `duration` [s]."""
     true = sensed(p, s)
