@@ -31,4 +31,5 @@ EFFECT = Effect(
     memory="brief",
     linear=True,
     jumps=True,
+    dead_time="delay",
 )

@@ -32,6 +32,7 @@ EFFECT = Effect(
     # rad, the angle that the sensor shows
     state=("lagged",),
     memory="brief",
+    lag="time_constant",
     linear=True,
 )
 
