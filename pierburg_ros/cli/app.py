@@ -100,6 +100,15 @@ COMMANDS = {
             "pierburg diagnose run.mcap -o out --json > found.json",
         ),
     ),
+    "fleet": Command(
+        "Many recordings of many actuators: how each ages, and which to look at first.",
+        examples=(
+            "pierburg fleet recordings -o fleet",
+            "pierburg fleet runs --pattern '{unit}/{date}_*.mcap' -o fleet",
+            "pierburg fleet runs -o fleet --limit armature_resistance=5",
+            "pierburg fleet fleet.csv --scheduler tcp://10.0.0.5:8786 -o f",
+        ),
+    ),
     "inspect": Command(
         "What is in a recording: topics, rates, ranges, losses, clocks, what each could be.",
         examples=(
@@ -125,8 +134,13 @@ COMMANDS = {
         examples=("pierburg recover run.mcap", "pierburg recover run.mcap -o whole.mcap"),
     ),
     "prove": Command(
-        "Seeded blind trials of the diagnosis.",
-        examples=("pierburg prove --trials 1 -o proof", "pierburg prove --only backlash --only drift -o proof"),
+        "Seeded blind trials of the diagnosis; known effects put into your own recordings.",
+        examples=(
+            "pierburg prove --trials 1 -o proof",
+            "pierburg prove --only backlash --only drift -o proof",
+            "pierburg prove --real bench/ --actuator my.yaml -o proof",
+            "pierburg prove --real bench/ --model my.yaml --budget 60 -o proof",
+        ),
     ),
     "tune": Command(
         "PIFLC gains and sets for a corrected model, or for a set of plants.",
@@ -204,8 +218,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
-    """The arguments with an option of `SPREAD` repeated before each of its values: --simulation a b is one of a and one
-    of b. Click has no option with several values."""
+    """The arguments with an option of `SPREAD` repeated before each of its values.
+
+    `--simulation a b` is one of a and one of b. Click has no option with several values.
+    """
     found: list[str] = []
     option = ""
     for argument in arguments:
@@ -240,6 +256,7 @@ experiment = standalone("experiment")
 identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
+fleet = standalone("fleet")
 inspect = standalone("inspect")
 export = standalone("export")
 actuator = standalone("actuator")

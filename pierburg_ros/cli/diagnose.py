@@ -13,6 +13,7 @@ from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.diagnosis.search.tried import Tried
 from pierburg_ros.errors import InputError
@@ -42,6 +43,7 @@ def diagnose(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    rerun: RerunOption = None,
     jobs: JobsOption = None,
     budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
         USUAL_BUDGET
@@ -51,8 +53,8 @@ def diagnose(
 ) -> str:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
-    verdict yet.
+    Writes diagnosis.json, model.yaml, report.html, overview.png and diagnosis.mcap (for Foxglove and PlotJuggler,
+    beside the recording) to the output folder. Ctrl-C gives the best verdict yet.
     """
     nominal = chosen_model(model, actuator)
     if simulation_signals and not simulation:
@@ -66,9 +68,13 @@ def diagnose(
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)
+    if rerun:
+        diagnosis.write_rerun(rerun)
     console = terminal()
     console.print(shown(diagnosis.document))
-    console.print(f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png", soft_wrap=True)
+    console.print(
+        f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png, diagnosis.mcap", soft_wrap=True
+    )
     return diagnosis.to_json()
 
 

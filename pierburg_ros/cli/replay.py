@@ -10,6 +10,7 @@ import typer
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
@@ -24,6 +25,7 @@ def replay(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    rerun: RerunOption = None,
 ) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
@@ -33,6 +35,8 @@ def replay(
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
+    if rerun:
+        comparison.write_rerun(rerun)
     console = terminal()
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)

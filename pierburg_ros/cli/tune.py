@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.terminal import terminal
@@ -25,6 +26,7 @@ from pierburg_ros.closed_loop.tune import STATED, Task
 from pierburg_ros.closed_loop.tune import tune as find_settings
 from pierburg_ros.control import Settings, parameter_file, read_parameter_file
 from pierburg_ros.errors import InputError
+from pierburg_ros.executors import Lost, ended
 from pierburg_ros.library.output import write_whole
 from pierburg_ros.pages.listing import Listing
 
@@ -58,11 +60,13 @@ def tune(
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
     ] = None,
     jobs: JobsOption = None,
+    scheduler: SchedulerOption = None,
 ) -> dict[str, object]:
     """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue.
 
     With --model or --actuator: for that plant, cold and hot, beside the controller in use. The file is a ROS parameter
     file; load it into a running controller with: ros2 param load /controller FILE
+    On a cluster each controller of a comparison is tuned by one worker.
     """
     for path in (output, compare):
         if path is not None and path.is_dir():
@@ -71,14 +75,17 @@ def tune(
     in_use = Settings() if controller is None else read_parameter_file(controller)
     effort = Effort(generations, members, seed, jobs)
     if model is not None or actuator is not None:
-        refuse_comparison(compare)
+        refuse_for_one_plant({"--compare": compare, "--scheduler": scheduler})
         task = task_for(chosen_model(model, actuator), goal, predictor)
         return retuned(task, in_use, effort, output)
     if predictor is not None or controller is not None:
         raise InputError("Found --predictor or --controller without a model, expected one. Add --model model.yaml.")
-    plants = plant_set()
     names = ["PIFLC"] if compare is None else list(DESIGNS)
-    judgements = [tuned(Task(DESIGNS[name], goal, plants), effort) for name in names]
+    if scheduler is None:
+        plants = plant_set()
+        judgements = [tuned(Task(DESIGNS[name], goal, plants), effort) for name in names]
+    else:
+        judgements = tuned_on(scheduler, names, goal, effort)
     write_whole(output, parameter_file(judgements[0].settings, heading(goal, judgements[0])))
     if compare is not None:
         document = compare.read_text(encoding="utf-8") if compare.exists() else ""
@@ -97,10 +104,11 @@ class Effort:
     jobs: int | None
 
 
-def refuse_comparison(compare: Path | None) -> None:
-    """InputError where the comparison of controllers is asked for on one plant."""
-    if compare is not None:
-        raise InputError("Found --compare with a model; it compares controllers over the set of plants. Leave one out.")
+def refuse_for_one_plant(given: Mapping[str, object]) -> None:
+    """InputError where an option of the whole set of plants is given with a model."""
+    for option, value in given.items():
+        if value is not None:
+            raise InputError(f"Found {option} with a model; it belongs to the set of plants. Leave one of them out.")
 
 
 def retuned(task: Task, in_use: Settings, effort: Effort, output: Path) -> dict[str, object]:
@@ -130,6 +138,27 @@ def outlook(before: Mapping[str, Promise], after: Mapping[str, Promise]) -> List
     ]
     headings = ("plant", "settling [ms]", "overshoot [%]", "error [deg]", "hunting [deg]")
     return Listing(headings, rows, "Predicted for the worst step, before -> after")
+
+
+def tuned_on(scheduler: str, names: Sequence[str], goal: Goal, effort: Effort) -> list[Judgement]:
+    """Tune and judge controllers on the workers of a cluster, with progress on stderr."""
+    found: dict[str, Judgement] = {}
+    work = partial(tuned_there, goal=goal, effort=effort)
+    with progress() as show:
+        show(Step("controllers", 0, len(names)))
+        for done, (name, judgement) in enumerate(ended(work, names, scheduler=scheduler), start=1):
+            if isinstance(judgement, Lost):
+                raise InputError(f"{name} could not be tuned: {judgement.reason}. Give workers more memory.")
+            found[name] = judgement
+            show(Step("controllers", done, len(names), what=name))
+    return [found[name] for name in names]
+
+
+def tuned_there(name: str, goal: Goal, effort: Effort) -> Judgement:
+    """A controller tuned and judged by the worker that runs this, with one thread."""
+    task = Task(DESIGNS[name], goal, plant_set())
+    settings = find_settings(task, effort.generations, effort.members, effort.seed, jobs=1)
+    return judge(task.design, settings, task.plants, jobs=1)
 
 
 def tuned(task: Task, effort: Effort, known: Sequence[Settings] = ()) -> Judgement:

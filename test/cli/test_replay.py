@@ -63,11 +63,23 @@ def test_says_from_where_a_recording_that_begins_in_motion_is_simulated(tmp_path
 
 def test_its_mcap_can_be_replayed_again(at_rest, tmp_path):
     replay(at_rest, "--actuator", "pierburg", "--output", tmp_path / "once")
-    again = read_recording(tmp_path / "once" / "replay.mcap")
+    named = {"hall_voltage": "/replay/measured", "duty": "/replay/command"}
+    again = read_recording(tmp_path / "once" / "replay.mcap", topics=named)
     np.testing.assert_array_equal(again.measured, read_recording(at_rest).measured)
-    assert replay(tmp_path / "once" / "replay.mcap", "--actuator", "pierburg", "--output", tmp_path / "twice") == 0
+    options = [word for signal, topic in named.items() for word in ("--topic", f"{signal}={topic}")]
+    written = tmp_path / "once" / "replay.mcap"
+    assert replay(written, "--actuator", "pierburg", *options, "--output", tmp_path / "twice") == 0
     once, twice = (json.loads((tmp_path / name / "replay.json").read_text())["rmse"] for name in ("once", "twice"))
     assert once == twice
+
+
+def test_rerun_that_is_not_installed_is_said_before_any_work(at_rest, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("pierburg_ros.viewers.rerun_overlay.find_spec", lambda _: None)
+    output, file = tmp_path / "out", tmp_path / "run.rrd"
+    assert replay(at_rest, "--actuator", "pierburg", "--output", output, "--rerun", file) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "pip install 'pierburg_ros[rerun]'" in said
+    assert not output.exists() and not file.exists()
 
 
 def test_the_page_needs_no_network(at_rest, tmp_path):

@@ -100,7 +100,7 @@ def test_the_predictor_can_be_left_out(lagging, tmp_path):
         (("--predictor",), "without a model"),
         (("--actuator", "pierburg", "--predictor"), "neither dead time nor lag"),
         (("--actuator", "xl330"), "the controller is tuned for a duty, a Hall voltage and a spring"),
-        (("--actuator", "pierburg", "--compare", "control.md"), "--compare with a model"),
+        (("--actuator", "pierburg", "--compare", "control.md"), "Found --compare with a model"),
     ],
 )
 def test_what_cannot_be_tuned_for_is_one_line(options, reason, tmp_path, capsys):

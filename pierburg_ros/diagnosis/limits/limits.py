@@ -56,6 +56,14 @@ class Limit:
 
 
 @dataclass(frozen=True)
+class Limits:
+    """The limits found, and the ids of effects for whose limits there was no time."""
+
+    found: Sequence[Limit] = ()
+    untested: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class _Case:
     """One way in which an effect may act: its variant, a start, and the parameter of it that is its strength."""
 
@@ -87,32 +95,42 @@ def limits(
     progress: Progress = lambda _: None,
     jobs: int | None = None,
     deadline: Deadline | None = None,
-) -> list[Limit]:
+) -> Limits:
     """The limit of every effect that `final` does not name, where these recordings set one.
 
     The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
     recordings tell apart follow: linearly first, and at the limit by a fit (profile likelihood). What `final` leaves is
     part of the likelihood, as a discrepancy. Of several places, rhythms or phases at which an effect may act, the
-    weakest limit counts.
+    weakest limit counts. At the `deadline` those found by then are kept.
     """
-    estimator, base = _base(found, final)
-    cases = [case for case in _cases(found, final) if case.variant.effect not in final.explanation.effects]
+    deadline = deadline or Deadline()
+    strengths: dict[tuple[str, str], list[_Case]] = {}
+    for case in _cases(found, final):
+        if case.variant.effect not in final.explanation.effects:
+            strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
+    tested: list[Limit | None] = []
+    tell = staged(progress, "what is ruled out", len(strengths))
 
-    tell = staged(progress, "what is ruled out", len(cases))
+    def test() -> None:
+        with workers(jobs, deadline) as pool:
+            estimator, base = next(iter(pool.map(lambda final: _base(found, final), [final])))
 
-    def limit(case: _Case) -> tuple[_Case, float]:
-        tell(f"limit of {case.variant.effect}")
-        return case, _linear(estimator, base, case)
+            def limit(cases: Sequence[_Case]) -> Limit | None:
+                tell(f"limit of {cases[0].variant.effect}")
+                return _limit(estimator, base, cases)
 
-    weakest: dict[tuple[str, str], tuple[_Case, float]] = {}
-    with workers(jobs, deadline) as pool:
-        for case, factor in pool.map(limit, cases):
-            key = case.variant.effect, case.parameter
-            known = weakest.get(key)
-            if known is None or _strength(case, factor) > _strength(*known):
-                weakest[key] = case, factor
-        confirmed = pool.map(lambda pair: _confirmed(estimator, base, *pair), weakest.values())
-        return [limit for limit in confirmed if limit is not None]
+            for each in pool.map(limit, strengths.values()):
+                tested.append(each)
+
+    deadline.attempt(test, None)
+    untested = dict.fromkeys(effect for effect, _ in list(strengths)[len(tested) :])
+    return Limits([each for each in tested if each is not None], list(untested))
+
+
+def _limit(estimator: Estimator, base: Fit, cases: Sequence[_Case]) -> Limit | None:
+    """The weakest limit among the ways in which an effect may act by one strength."""
+    factors = [(case, _linear(estimator, base, case)) for case in cases]
+    return _confirmed(estimator, base, *max(factors, key=lambda pair: _strength(*pair)))
 
 
 def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:

@@ -57,8 +57,9 @@ Folds = list[tuple[Data, Data]]
 
 
 def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fit, dict[str, LeftOut]]:
-    """A fit with the effects that each lower the error on recordings left out, added one by one, and what speaks for
-    each of them, by id.
+    """A fit with the effects that each lower the error on recordings left out, and what speaks for each, by id.
+
+    They are added one by one.
 
     The parameters are fitted again from the recalibrated ones and from their nominal values: what blocks do not tell
     apart may have led them astray.

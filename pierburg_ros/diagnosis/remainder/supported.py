@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.remainder.scored import Scored, scored, settled
+from pierburg_ros.diagnosis.remainder.turn import with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
@@ -53,8 +54,13 @@ class Weight:
 
 @dataclass(frozen=True)
 class Supported:
-    """An explanation with its likelihood, and the weight of each of its quantities."""
+    """An explanation with its likelihood, and the weight of each of its quantities.
 
+    `nominal` is the model that it changes: the nominal one, on a shaft that goes round with the lesser orders of the
+    torque over a turn.
+    """
+
+    nominal: Model
     scored: Scored
     weights: Mapping[Quantity, Weight]
 
@@ -66,6 +72,7 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) ->
     most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. Those that do
     not carry enough are taken away again, the weakest first. It ends where one more addition helps no further one.
     """
+    nominal = with_lesser_orders(data, nominal)
     best: Supported | None = None
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     for _ in range(MOST):
@@ -163,4 +170,4 @@ def _weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Suppor
     own = quantities(best.fit.explanation)
     left = best.cost - best.fit.solution.residual.size
     costs = zip(own, pool.map(lacking, own), strict=True)
-    return Supported(best, {quantity: Weight(cost - best.cost, left) for quantity, cost in costs})
+    return Supported(nominal, best, {quantity: Weight(cost - best.cost, left) for quantity, cost in costs})

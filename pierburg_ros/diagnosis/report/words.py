@@ -134,8 +134,10 @@ def summary(
 
 
 def warned(data: Data, verdict: Verdict, text: str) -> str:
-    """The summary after a warning where messages are missing, or, where they may have hidden anything, without a
-    conclusion."""
+    """The summary after a warning where messages are missing.
+
+    Where they may have hidden anything it is without a conclusion.
+    """
     if not data.warnings:
         return text
     warning = " ".join(data.warnings)
@@ -146,6 +148,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     if verdict == "unexplained" or (hidden and verdict != "missing_physics"):
         warning += " Nothing can be concluded: record again with fewer processes beside."
     return f"{warning} {text}"
+
+
+def remarked(remarks: Sequence[str], text: str) -> str:
+    """The summary after what is remarked of dirty recordings."""
+    return " ".join([*remarks, text])
 
 
 def provisional(text: str, stopped: bool) -> str:
@@ -179,6 +186,14 @@ def advice(
         steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
     steps += [f"To see {numbers.words(item.id)}: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
+
+
+def untested(effects: Sequence[str]) -> list[str]:
+    """What to do about limits for which there was no time."""
+    if not effects:
+        return []
+    listed = ", ".join(numbers.words(effect) for effect in effects)
+    return [f"There was no time to look how much of these is ruled out: {listed}. Give more with --budget or --thorough."]
 
 
 def _separating(name: str, tie: Sequence[str], stops: bool) -> str:

@@ -6,24 +6,29 @@ import pytest
 from support.fits import found_among
 from support.recordings import NOMINAL, data_on, recording
 
+from pierburg_ros.deadline import Deadline, OutOfTime
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.coordinates import Coordinates
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 
 LUMPS = Explanation(("armature_resistance", "spring_preload", "coulomb_friction"))
 SOME = {"input_delay", "pwm_deadband", "gear_compliance"}
 
 
-def limits_on(changes: dict[str, float], seed: int) -> dict[str, Limit]:
-    """Limits of `SOME` effects where nothing is named on a recording of the valve with `changes`."""
+def nothing_named(changes: dict[str, float], seed: int) -> tuple[Found, Fit]:
     data = data_on(recording(changes, duration=12.0, seed=seed))
     estimator = Estimator(data, NOMINAL)
     nominal = estimator.at(Explanation())
-    found: Found = replace(found_among(data, nominal), recalibrated=estimator.fit(LUMPS))
-    return {limit.effect: limit for limit in limits(found, nominal, jobs=1) if limit.effect in SOME}
+    return replace(found_among(data, nominal), recalibrated=estimator.fit(LUMPS)), nominal
+
+
+def limits_on(changes: dict[str, float], seed: int) -> dict[str, Limit]:
+    """Limits of `SOME` effects where nothing is named on a recording of the valve with `changes`."""
+    found, nominal = nothing_named(changes, seed)
+    return {limit.effect: limit for limit in limits(found, nominal, jobs=1).found if limit.effect in SOME}
 
 
 @pytest.fixture(scope="module")
@@ -49,3 +54,19 @@ def test_what_acts_as_strongly_as_a_limit_is_not_excluded(clean, seed):
     delay, width = clean["input_delay"].value, clean["pwm_deadband"].value
     assert limits_on({"input_delay.delay": delay}, seed)["input_delay"].value > delay
     assert limits_on({"pwm_deadband.width": width}, seed)["pwm_deadband"].value > width
+
+
+def test_limits_found_before_the_time_is_over_are_kept_and_the_others_named(clean):
+    begun: list[str] = []
+
+    def stop_at_the_third(tried: str) -> None:
+        begun.append(tried.removeprefix("limit of "))
+        if len(begun) == 3:
+            raise OutOfTime
+
+    deadline = Deadline(1000.0)
+    found, nominal = nothing_named({}, seed=3)
+    kept = limits(found, nominal, stop_at_the_third, jobs=1, deadline=deadline)
+    assert {limit.effect for limit in kept.found} == set(begun[:2])
+    assert begun[2] in kept.untested and set(kept.untested).isdisjoint(begun[:2])
+    assert deadline.stopped
