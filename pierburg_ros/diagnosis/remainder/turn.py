@@ -12,6 +12,8 @@ from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
 MENTIONED = 4
 """How many orders are told in words. Chosen: a sentence holds no more; the map holds all."""
+LEAST = 0.01
+"""Share of the strongest order from which another is told. Chosen: less is not seen beside it."""
 
 
 def has_overtones(data: Data, nominal: Model) -> bool:
@@ -38,7 +40,8 @@ def with_turn(data: Data, base: Model) -> Model | None:
 def described_turn(torque: Signal, unit: str) -> str:
     """The strongest orders of a `torque` over a turn, shape (angles, 1), in words."""
     amplitude = 2.0 * np.abs(np.fft.rfft(torque[:-1, 0])) / (torque.shape[0] - 1)
-    strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > 0.0]
+    least = LEAST * float(np.max(amplitude))
+    strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > least]
     orders = ", ".join(f"{amplitude[order]:#.2g} {unit} {order} times" for order in strongest)
     return f"it repeats itself with every turn, with {orders}"
 
