@@ -52,7 +52,7 @@ ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "ver
     "viewers",
 }
 ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "viewers"}
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers"}
 ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}

@@ -9,13 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-<<<<<<< HEAD
 from pierburg_ros.cli import prove_real
-from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption
-=======
 from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
->>>>>>> fleet
+from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.progress import Step, Tell, progress
 from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
@@ -57,21 +53,17 @@ def prove(
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
-<<<<<<< HEAD
-    reports what is done; called again, it goes on.
+    reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
 
     With --real, effects are put into your own recordings by changing their channels where that is exact; the diagnosis
     has to find them beside all that is really there, against the model of your other recordings. Writes results.jsonl
     and proof-real.md.
-=======
-    reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
->>>>>>> fleet
     """
     if real is not None:
         why = "with --real, where nothing is recorded. Leave it out"
         refuse(why, {"--generate-only": generate_only, "--over-graph": over_graph, "--dirty": dirty})
         machine = prove_real.machine(real, actuator, model, signals, topic, time)
-        return prove_real.prove(machine, output, only or [], level or [], trials, jobs, budget, docs)
+        return prove_real.prove(machine, output, only or [], level or [], trials, jobs, scheduler, budget, docs)
     given: dict[str, object] = {"--level": level, "--budget": budget, "--actuator": actuator, "--model": model}
     given |= {"--signals": signals, "--topic": topic, "--time": time}
     refuse("without --real, expected the folder of recordings that it is about", given)

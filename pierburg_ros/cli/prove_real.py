@@ -69,6 +69,7 @@ def prove(
     levels: Sequence[str],
     most: int | None,
     jobs: int | None,
+    scheduler: str | None,
     budget: float | None,
     docs: Path | None,
 ) -> list[dict[str, Any]]:
@@ -77,7 +78,8 @@ def prove(
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with progress() as show:
         show(Step("the models of other recordings"))
-        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, report=Reporter(show))
+        reporter = Reporter(show)
+        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, scheduler=scheduler, report=reporter)
     if not results:
         raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
     done = Run(results, plan)

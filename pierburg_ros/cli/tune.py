@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop.designs import DESIGNS
@@ -23,6 +24,7 @@ from pierburg_ros.closed_loop.tune import STATED, Task
 from pierburg_ros.closed_loop.tune import tune as find_settings
 from pierburg_ros.control import parameter_file
 from pierburg_ros.errors import InputError
+from pierburg_ros.executors import Lost, ended
 from pierburg_ros.library.output import write_whole
 from pierburg_ros.pages.listing import Listing
 
@@ -47,24 +49,50 @@ def tune(
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
     ] = None,
     jobs: JobsOption = None,
+    scheduler: SchedulerOption = None,
 ) -> dict[str, object]:
-    """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue."""
+    """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue.
+
+    On a cluster each controller of a comparison is tuned by one worker.
+    """
     for path in (output, compare):
         if path is not None and path.is_dir():
             raise InputError(f"{path} is a folder, expected a file. Name the file to write.")
     goal = Goal(settling, overshoot / 100.0, math.radians(steady_state_error), math.radians(hunting))
-    plants = plant_set()
     names = ["PIFLC"] if compare is None else list(DESIGNS)
-    judgements = []
-    for name in names:
-        task = Task(DESIGNS[name], goal, plants)
-        judgements.append(tuned(task, generations, members, seed, jobs))
+    if scheduler is None:
+        plants = plant_set()
+        judgements = [tuned(Task(DESIGNS[name], goal, plants), generations, members, seed, jobs) for name in names]
+    else:
+        judgements = tuned_on(scheduler, names, goal, generations, members, seed)
     write_whole(output, parameter_file(judgements[0].settings, heading(goal, judgements[0])))
     if compare is not None:
         document = compare.read_text(encoding="utf-8") if compare.exists() else ""
         write_whole(compare, insert(document, report(goal, judgements)))
     terminal().print(summary(goal, judgements), f"Parameters in {output}")
     return {"file": str(output), "settings": asdict(judgements[0].settings)}
+
+
+def tuned_on(
+    scheduler: str, names: Sequence[str], goal: Goal, generations: int, members: int, seed: int
+) -> list[Judgement]:
+    """Tune and judge controllers on the workers of a cluster, with progress on stderr."""
+    found: dict[str, Judgement] = {}
+    work = partial(tuned_there, goal=goal, generations=generations, members=members, seed=seed)
+    with progress() as show:
+        show(Step("controllers", 0, len(names)))
+        for done, (name, judgement) in enumerate(ended(work, names, scheduler=scheduler), start=1):
+            if isinstance(judgement, Lost):
+                raise InputError(f"{name} could not be tuned: {judgement.reason}. Give workers more memory.")
+            found[name] = judgement
+            show(Step("controllers", done, len(names), what=name))
+    return [found[name] for name in names]
+
+
+def tuned_there(name: str, goal: Goal, generations: int, members: int, seed: int) -> Judgement:
+    """A controller tuned and judged by the worker that runs this, with one thread."""
+    task = Task(DESIGNS[name], goal, plant_set())
+    return judge(task.design, find_settings(task, generations, members, seed, jobs=1), task.plants, jobs=1)
 
 
 def tuned(task: Task, generations: int, members: int, seed: int, jobs: int | None = None) -> Judgement:

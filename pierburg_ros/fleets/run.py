@@ -9,7 +9,7 @@ from typing import Any
 
 from pierburg_ros.executors import Lost, ended
 from pierburg_ros.fleets.store import Store
-from pierburg_ros.fleets.structure import base_names, own_effects, without_least
+from pierburg_ros.fleets.structure import base_names, explained, own_effects, without_least
 from pierburg_ros.fleets.task import Task
 from pierburg_ros.fleets.units import Source
 from pierburg_ros.fleets.work import Measurement, Outcome, examined, measured
@@ -77,7 +77,7 @@ def measured_all(
     usable: Sequence[tuple[Source, str, dict[str, Any]]], task: Task, store: Store, where: Where, report: Report
 ) -> dict[str, dict[str, Any]]:
     """By path: what the model of the fleet measures of each recording, with no more than the recordings determine."""
-    names = base_names([result["findings"] for _, _, result in usable])
+    names = base_names([result["findings"] for _, _, result in usable if explained(result)])
     while True:
         found = measured_with(names, usable, task, store, where, report)
         fewer = without_least(names, shares_determined(names, list(found.values())))

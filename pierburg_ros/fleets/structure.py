@@ -21,8 +21,13 @@ SELDOM = 0.02
 not varied."""
 
 
+def explained(result: Mapping[str, Any]) -> bool:
+    """Whether a diagnosis has come to its end and explains its recording; otherwise it may change anything."""
+    return not result["stopped"] and result["verdict"] != "unexplained"
+
+
 def base_names(findings: Sequence[Sequence[Mapping[str, Any]]]) -> tuple[str, ...]:
-    """The base parameters that the diagnoses of a fleet change, those that most of them change first."""
+    """The base parameters that diagnoses of a fleet change, those that most of them change first."""
     counts = Counter(each["name"] for found in findings for each in found if each["kind"] == "parameter")
     least = max(FEWEST, SELDOM * len(findings))
     return tuple(name for name, count in counts.most_common() if count >= least)

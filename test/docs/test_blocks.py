@@ -15,6 +15,7 @@ from pierburg_ros.recording.signals import SIGNALS
 LANGUAGES = {"sh", "console", "text", "python", "yaml", "csv", "json", "{eval-rst}"}
 RUN = {
     "README.md": "test/library/test_documentation.py",
+    "docs/fleet.md": "test/fleets/test_fleet.py",
     "docs/library.md": "test/library/test_documentation.py",
     "docs/my_bag.md": "test/docs/test_tutorials.py",
     "docs/simulator.md": "test/export/test_pages.py",
@@ -52,6 +53,7 @@ def test_data_can_be_read(page, tmp_path):
 
 
 def test_the_contract_shows_fields_that_the_document_has():
+    """Section 5 of docs/contract.md."""
     diagnosis, _ = (json.loads(block.text) for block in blocks("docs/contract.md", "json"))
     assert set(diagnosis) <= {field.alias or name for name, field in Diagnosis.model_fields.items()}
 

@@ -38,7 +38,8 @@ def rounded(found: Found, recording: Recording) -> str | None:
     size = f"{does * found.data.noise:.2g} {found.data.actuator.unit}"
     return (
         f"{recording.name}: the {recording.input} is logged in steps of {step:.3g}. If what was applied lay between"
-        f" them, that moves the signal by some {size}, as much as is left: nothing can be concluded. Log the {recording.input} as it is applied."
+        f" them, that moves the signal by some {size}, as much as is left: nothing can be concluded. Log the"
+        f" {recording.input} as it is applied."
     )
 
 

@@ -29,7 +29,7 @@ from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST, RESULT, diagnose, fi
 from pierburg_ros.recording import Recording, read_recording
 
 RECORDING, MODEL, ANSWER = "recording.mcap", "model.yaml", "diagnosis/diagnosis.json"
-NOTHING: dict[str, Any] = {"verdict": "none", "effects": [], "ruled_out": []}
+NOTHING: dict[str, Any] = {"verdict": "none", "effects": []}
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,11 @@ class Bench:
         return read_model(diagnosed if diagnosed.exists() else self.output / MODEL)
 
     def untouched(self, trial: Trial) -> dict[str, Any]:
-        """The diagnosis of a trial's recording as it is; one that says nothing where it gave no answer."""
+        """The diagnosis of a trial's recording as it is; CannotPutIn where it gave no answer."""
         answer = self.folder(replace(trial, kind=UNTOUCHED, level="plain")) / ANSWER
-        return dict(json.loads(answer.read_text())) if answer.exists() else NOTHING
+        if not answer.exists():
+            raise CannotPutIn("the recording gives no answer as it is")
+        return dict(json.loads(answer.read_text()))
 
 
 def take_up(machine: Machine, output: Path) -> None:
@@ -133,6 +135,7 @@ def changed(trial: Trial, bench: Bench) -> tuple[Recording, Model, Truth]:
     model, recording = bench.model(trial.half), bench.recording(trial.recording)
     if trial.kind == UNTOUCHED:
         return recording, model, Truth(trial)
+    ruled_out = bench.untouched(trial).get("ruled_out", [])
     if trial.kind == WITHHELD:
         if recording.supply_voltage is None or trial.level != "plain":
             raise CannotPutIn("no supply voltage was recorded, and it is withheld whole or not at all")
@@ -142,7 +145,6 @@ def changed(trial: Trial, bench: Bench) -> tuple[Recording, Model, Truth]:
             raise CannotPutIn(f"a number is not told wrong at the level {trial.level}")
         true, factor = model.values[trial.kind], WRONG[trial.level]
         return recording, model.with_values({trial.kind: factor * true}), Truth(trial, factor, {trial.kind: true})
-    ruled_out = bench.untouched(trial)["ruled_out"]
     size, limit = (strength(trial.kind, level, model, ruled_out) for level in (trial.level, "limit"))
     if size is None:
         raise CannotPutIn(f"the untouched recording gives no level {trial.level}")

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.executors import Lost, ended
 from pierburg_ros.proof.real.conduct import Bench, conduct, diagnose_others, take_up
 from pierburg_ros.proof.real.machine import Machine
 from pierburg_ros.proof.real.strengths import LEVELS, possible, tellable
 from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial
-from pierburg_ros.proof.run import RUN, ended, finish_when_interrupted
-from pierburg_ros.proof.trial_run import DIAGNOSE, result, source_version
+from pierburg_ros.proof.run import RUN
+from pierburg_ros.proof.trial_run import DIAGNOSE, result
+from pierburg_ros.version import source_version
 
 RESULTS = "results.jsonl"
 Report = Callable[[int, int, dict[str, Any] | None], None]
@@ -86,30 +86,30 @@ def prove(
     budget: float,
     *,
     workers: int | None = None,
+    scheduler: str | None = None,
     command: Sequence[str] = DIAGNOSE,
     report: Report = lambda done, total, last: None,
 ) -> list[dict[str, Any]]:
     """Conduct the trials that are missing and give the results; after SIGINT or SIGTERM, those done by then.
 
-    Results belong to one version of the sources: that at the start. InputError where the recordings cannot be
-    diagnosed at all.
+    Results belong to one version of the sources: that at the start. The workers of a cluster (`scheduler`) must see the
+    folder `output` under the same path. InputError where the recordings cannot be diagnosed at all.
     """
     begin(output, plan, budget)
-    bench = Bench(output, source_version(), budget, command)
-    cores = workers or os.cpu_count() or 1
-    machine, done = plan.machine, 0
-    with ProcessPoolExecutor(cores, initializer=finish_when_interrupted) as pool:
-        try:
-            if not machine.known:
-                modelled = partial(diagnose_others, bench=bench)
-                halves = sorted({trial.half for trial in plan.untouched})
-                list(ended(pool, modelled, [(half, tuple(machine.others(half))) for half in halves], cores))
-            for stage in plan.stages:
-                for last in ended(pool, partial(conduct, bench=bench), stage, cores):
-                    done += 1
-                    report(done, len(plan.trials), last)
-        except KeyboardInterrupt:
-            pass
+    bench, machine, done = Bench(output.resolve(), source_version(), budget, command), plan.machine, 0
+    try:
+        if not machine.known:
+            halves = sorted({trial.half for trial in plan.untouched})
+            asked = [(half, tuple(machine.others(half))) for half in halves]
+            for (half, _), modelled in ended(partial(diagnose_others, bench=bench), asked, workers, scheduler):
+                if isinstance(modelled, Lost):
+                    raise InputError(f"The model for half {half + 1} could not be diagnosed: {modelled.reason}.")
+        for stage in plan.stages:
+            for _, last in ended(partial(conduct, bench=bench), stage, workers, scheduler):
+                done += 1
+                report(done, len(plan.trials), None if isinstance(last, Lost) else last)
+    except KeyboardInterrupt:
+        pass
     return results(bench, plan.trials)
 
 
