@@ -46,7 +46,7 @@ OUTLYING = 12.0
 shaft that is caught in motion or knocked lies beyond, one that slips does not."""
 LATE = 0.5
 """Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
-controller whose current is recorded behind one it is a third to a ninth (n = 3)."""
+controller whose current is recorded behind one it is a quarter to a third (n = 3)."""
 
 
 @dataclass(frozen=True)
