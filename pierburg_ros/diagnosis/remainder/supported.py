@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.remainder.scored import Scored, scored, settled
-from pierburg_ros.diagnosis.remainder.turn import with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
@@ -71,12 +70,9 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) ->
     Quantities are added to the nominal model one by one, each the one that makes the recordings likeliest with its own
     most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. Those that do
     not carry enough are taken away again, the weakest first. It ends where one more addition helps no further one.
-    On a shaft that goes round drifts come first: with a wrong friction it is held where it should turn.
     """
-    nominal = with_lesser_orders(data, nominal)
     best: Supported | None = None
-    begun = Explanation(drifting(nominal)) if nominal.residual_torque is not None else Explanation()
-    reached = scored(data, Estimator(data, nominal).fit(begun, iterations=BRIEF))
+    reached = scored(data, Estimator(data, nominal).at(Explanation()))
     for _ in range(MOST):
         following = _grown(data, nominal, reached, pool, progress)
         if following is None:

@@ -18,7 +18,7 @@ LEAST = 0.01
 
 def has_overtones(data: Data, nominal: Model) -> bool:
     """Whether more than one order of a torque over a turn is seen: more than one effect could be named for."""
-    found = _repeated(data, nominal)
+    found = repeated(data, nominal)
     return found is not None and found.orders.size > 1
 
 
@@ -27,13 +27,13 @@ def with_lesser_orders(data: Data, nominal: Model) -> Model:
 
     A ripple has overtones. A sine alone leaves so much of them that little is seen beside it.
     """
-    found = _repeated(data, nominal)
+    found = repeated(data, nominal)
     return nominal if found is None else _with(nominal, found.lesser)
 
 
 def with_turn(data: Data, base: Model) -> Model | None:
     """`base` with what its effects leave of the torque over a turn; None where no shaft goes round."""
-    found = _repeated(data, base)
+    found = repeated(data, base)
     return None if found is None else _with(base, found)
 
 
@@ -46,7 +46,7 @@ def described_turn(torque: Signal, unit: str) -> str:
     return f"it repeats itself with every turn, with {orders}"
 
 
-def _repeated(data: Data, model: Model) -> Balance | None:
+def repeated(data: Data, model: Model) -> Balance | None:
     """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
 
     Of several runs that one tells it in which the most is seen.
