@@ -1,5 +1,6 @@
 """The main job over DDS: a controlled run is recorded and replays to the sensor's noise; so does its duty."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -54,6 +55,12 @@ def test_a_closed_loop_replays_to_the_sensors_noise(recorded):
     comparison = compare(MODEL, read_recording(recorded))
     assert comparison.simulated.max() - comparison.simulated.min() > 2.0
     assert comparison.rmse < 1.05 * NOISE
+
+
+def test_the_layouts_for_a_loop_show_nothing_that_a_recording_of_it_lacks(recorded):
+    layouts = Path(__file__).parents[2] / "layouts"
+    command = [sys.executable, layouts / "check_layouts.py", recorded, *layouts.glob("*_loop.*")]
+    assert subprocess.run(command, capture_output=True, text=True).stdout == "run.mcap has every path of 2 layouts\n"
 
 
 def test_a_recorded_duty_played_back_drives_the_plant(recorded, graph):
