@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pierburg_ros.arrays import Signal
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.recording.loss import Span
 
@@ -14,8 +14,8 @@ noise is then known to 6 % at 500 Hz."""
 HIGH = 1.5
 """Error of such a block, over the noise, from which it is not noise. Derived: eight standard deviations at 500 Hz."""
 MOST = 0.95
-"""Share of all errors beyond the noise that a stretch must hold. Chosen: the rest may be friction's, which rests
-elsewhere for a while after it; not varied."""
+"""Share of all errors beyond the noise that a stretch must hold where it cannot hold all. Chosen: the rest is a slip
+that comes at another moment; not varied."""
 LONGEST = 0.25
 """Longest stretch, as a share of the recording. Chosen: 15 s of a minute, five seconds and the time until the duty has
 moved the shaft back; not varied."""
@@ -33,14 +33,20 @@ def confined(data: Data, residual: Signal) -> Span | None:
     beyond = np.where(error > HIGH**2, error - 1.0, 0.0)
     if not np.any(beyond):
         return None
-    first, last = _shortest(beyond, MOST)
-    while first > 0 and error[first - 1] > HIGH**2:
-        first -= 1
-    while last < error.size - 1 and error[last + 1] > HIGH**2:
-        last += 1
-    start, end = (time[0] + BLOCK * data.scales.time * place for place in (first - 1, last + 2))
-    start, end = max(float(start), float(time[0])), min(float(end), float(time[-1]))
-    return (start, end) if end - start <= LONGEST * (time[-1] - time[0]) else None
+    for share in (1.0, MOST):
+        first, last = _grown(error > HIGH**2, *_shortest(beyond, share))
+        start, end = (float(time[0]) + BLOCK * data.scales.time * place for place in (first - 1, last + 2))
+        start, end = max(start, float(time[0])), min(end, float(time[-1]))
+        if end - start <= LONGEST * (time[-1] - time[0]):
+            return start, end
+    return None
+
+
+def _grown(high: Flags, first: int, last: int) -> tuple[int, int]:
+    """A stretch with the blocks on either side of it that are `high` too, up to the first that is not."""
+    low = np.flatnonzero(~high)
+    before, after = low[low < first], low[low > last]
+    return int(before[-1]) + 1 if before.size else 0, int(after[0]) - 1 if after.size else high.size - 1
 
 
 def _shortest(weights: Signal, share: float) -> tuple[int, int]:
