@@ -27,7 +27,7 @@ SLOW_PART = 0.1
 """Share of the steps between samples that are finer than the one by which the highest frequency is told. Chosen: the
 slow tenth of a movement shows what the rest is too fast for."""
 TURN = 2.0 * math.pi
-"""Angle after which a shaft is where it was [rad]. Derived: a full circle."""
+"""Angle after which a shaft is where it was [rad]. Derived: one turn in radian."""
 WHOLE = 0.9
 """Share of a turn that a shaft has to be seen in for a map of it. Chosen: the rest of its orders tell the tenth."""
 FALSE_ALARM = 0.01
