@@ -220,4 +220,4 @@ def _least_height(orders: int) -> float:
     The power of an order without a rhythm is distributed exponentially, and its ratio to the mean of n others exceeds z
     with the chance (1 + z / n)^-n. A median of twice as many tells that mean about as well.
     """
-    return NEIGHBOURS * ((orders / FALSE_ALARM) ** (1.0 / NEIGHBOURS) - 1.0)
+    return NEIGHBOURS * (math.pow(orders / FALSE_ALARM, 1.0 / NEIGHBOURS) - 1.0)

@@ -35,7 +35,9 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
     left = clipped(torque) if frequencies.size else torque
     found: list[float] = []
     while frequencies.size and len(found) < most:
-        apart = np.all([np.abs(frequencies - other) > FINE * spacing(place) for other in found] or [[True]], axis=0)
+        apart = np.ones(frequencies.size, dtype=bool)
+        for other in found:
+            apart &= np.abs(frequencies - other) > FINE * spacing(place)
         if not apart.any():
             break
         power = _power(place, left, frequencies)

@@ -1,0 +1,56 @@
+"""The strongest order of a torque over a turn is named, where there are overtones and unseen data improve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.diagnosis.remainder.around import supported_around
+from pierburg_ros.diagnosis.search.candidates import drifting
+from pierburg_ros.estimation.data import Data, data_of, in_parts
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
+
+NOMINAL = Model.nominal(read_actuator("odrive")).with_values({"viscous_friction.coefficient": 0.01})
+TIME = np.arange(0.0, 6.0, 0.002)
+ANGLE = np.linspace(0.0, 2.0 * np.pi, 512)
+RIPPLE = {
+    "cogging_torque.amplitude": 0.006,
+    "cogging_torque.periods_per_motor_revolution": 7.0,
+    "cogging_torque.phase": 0.8,
+}
+
+
+def data_on(model: Model) -> Data:
+    """A rotor that goes round slowly under a current that wanders."""
+    random = np.random.default_rng(4)
+    current = 1.2 + 0.2 * np.interp(TIME, np.linspace(0.0, 6.0, 60), random.standard_normal(60))
+    angle = simulate(model, Inputs(TIME, current), TIME, 0.3, 2.0) + 1e-4 * random.standard_normal(TIME.size)
+    recording = Recording("turns", "position", TIME, angle, Channel(TIME, current), input="current")
+    return in_parts(data_of([recording], NOMINAL))
+
+
+def recalibrated(data: Data) -> Fit:
+    return Estimator(data, NOMINAL).fit(Explanation(drifting(NOMINAL)))
+
+
+def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
+    overtone = {"angle": ANGLE, "velocity": np.zeros(1), "period": 2.0 * np.pi}
+    overtone["torque"] = 0.003 * np.cos(28.0 * ANGLE)[:, None]
+    true = NOMINAL.with_values({**RIPPLE, "coulomb_friction": 0.012}).with_residual(overtone)
+    data = data_on(true)
+    found = supported_around(data, NOMINAL, recalibrated(data))
+    assert found is not None
+    values = found.scored.fit.values
+    assert values["cogging_torque.periods_per_motor_revolution"] == 7.0
+    assert values["cogging_torque.amplitude"] == pytest.approx(0.006, rel=0.1)
+    assert values["cogging_torque.phase"] == pytest.approx(0.8, abs=0.1)
+    assert values["coulomb_friction"] == pytest.approx(0.012, rel=0.1)
+
+
+def test_a_rotor_without_a_ripple_is_given_none() -> None:
+    data = data_on(NOMINAL.with_values({"coulomb_friction": 0.012}))
+    assert supported_around(data, NOMINAL, recalibrated(data)) is None
