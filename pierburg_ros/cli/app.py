@@ -73,7 +73,7 @@ COMMANDS = {
         examples=(
             "pierburg experiment rich -o bench",
             "pierburg experiment rich --graph -o bench",
-            "pierburg experiment --discriminate nominal backlash -o b",
+            "pierburg experiment --discriminate nominal my.yaml -o x",
         ),
     ),
     "identify": Command(
@@ -104,9 +104,9 @@ COMMANDS = {
         "Many recordings of many actuators: how each ages, and which to look at first.",
         examples=(
             "pierburg fleet recordings -o fleet",
-            "pierburg fleet runs --pattern '{unit}/{date}_*.mcap' -o fleet",
-            "pierburg fleet runs -o fleet --limit armature_resistance=5",
-            "pierburg fleet fleet.csv --scheduler tcp://10.0.0.5:8786 -o f",
+            "pierburg fleet runs --pattern '{unit}_{date}.mcap' -o f",
+            "pierburg fleet runs --limit armature_resistance=5 -o f",
+            "pierburg fleet runs.csv --scheduler tcp://head:8786 -o f",
         ),
     ),
     "inspect": Command(
@@ -137,9 +137,9 @@ COMMANDS = {
         "Seeded blind trials of the diagnosis; known effects put into your own recordings.",
         examples=(
             "pierburg prove --trials 1 -o proof",
-            "pierburg prove --only backlash --only drift -o proof",
+            "pierburg prove --only consistent --only drift -o proof",
             "pierburg prove --real bench/ --actuator my.yaml -o proof",
-            "pierburg prove --real bench/ --model my.yaml --budget 60 -o proof",
+            "pierburg prove --real bench --model my.yaml -o proof",
         ),
     ),
     "tune": Command(

@@ -1,9 +1,11 @@
 """docs/control.md says what the code says: the plants as judged, the comparison as it is written."""
 
 import re
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from pierburg_ros.closed_loop.course import STEPS
 from pierburg_ros.closed_loop.designs import DESIGNS
@@ -41,3 +43,27 @@ def masked(tables: str) -> str:
     """Tables with a mark in place of each result, but for how many goals there are; without the settings found."""
     found = tables[tables.index("### Settings found") : tables.index("### Goals")]
     return CELL.sub(lambda cell: f"# of {cell['goals']}" if cell["goals"] else "#", tables.replace(found, ""))
+
+
+def corrected_loops():
+    """The script that writes the table of corrected loops."""
+    spec = spec_from_file_location("corrected_loops", DOCUMENT.parent / "corrected_loops.py")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_corrected_loops_are_those_that_the_script_judges():
+    """Its searches take minutes: plants, columns, and one row that needs no search, are held against the page."""
+    script = corrected_loops()
+    text = DOCUMENT.read_text(encoding="utf-8")
+    table = text[text.index(script.BEGIN) : text.index(script.END)]
+    header, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.split("\n|")[1:]]
+    assert tuple(header) == script.HEADER
+    assert list(dict.fromkeys(row[0] for row in rows)) == list(script.MODELS)
+    name = "backlash 0.072 rad"
+    task = script.task_for(script.Model.nominal().with_values(script.MODELS[name]), script.Goal(), False)
+    judged = script.row(name, "as shipped", task, script.Settings())
+    written = next(row for row in rows if row[:2] == [name, "as shipped"])
+    for shown, now in zip(written[2:], judged[2:], strict=True):
+        assert float(now) == pytest.approx(float(shown), rel=0.05, abs=0.02)
