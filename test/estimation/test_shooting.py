@@ -130,3 +130,12 @@ def test_stretches_begin_with_the_shaft_ahead_of_a_sensor_that_lags():
     # from the first sample on, before any beginning is moved: the shaft is where the sensor will be a lag later
     shown = simulate(lagging, inputs, time, 0.2, 3.0)
     assert shown == pytest.approx(0.2 + 3.0 * (time - 0.05), abs=1e-9)
+
+
+def test_uneven_samples_make_no_stretch_much_longer_than_it_should_be() -> None:
+    """Where a stretch takes as many samples as it must have, the next one begins after it all the same."""
+    random = np.random.default_rng(5)
+    time = np.cumsum(random.uniform(0.0006, 0.0038, 4000))
+    length = 20 * float(np.median(np.diff(time)))
+    first = Shooting.of(time, np.sin(time), length).first
+    assert np.max(np.diff(time[first])) < 2.0 * length and np.min(np.diff(first)) >= FEWEST

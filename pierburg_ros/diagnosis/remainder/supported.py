@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.remainder.scored import Scored, scored, settled
-from pierburg_ros.diagnosis.remainder.turn import with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
@@ -72,7 +71,6 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) ->
     most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. Those that do
     not carry enough are taken away again, the weakest first. It ends where one more addition helps no further one.
     """
-    nominal = with_lesser_orders(data, nominal)
     best: Supported | None = None
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     for _ in range(MOST):
