@@ -127,7 +127,7 @@ def answered(result: Result) -> str:
 
 def markdown(run: Run) -> str:
     """The generated part of a machine."""
-    machine, results = run.plan.machine, run.results
+    machine, results, count = run.plan.machine, run.results, len(run.plan.machine.recordings)
     seconds = [r["seconds"] for r in results if r["seconds"] > 0]
     took = (
         f" One diagnosis took {np.median(seconds):.0f} s (median), the longest {max(seconds):.0f} s." if seconds else ""
@@ -138,7 +138,7 @@ def markdown(run: Run) -> str:
         else "Every other one, by name, is held against the model that the rest were diagnosed to."
     )
     sections = [
-        f"{len(machine.recordings)} recordings of `{machine.name}`; n = {len(results)} of at most"
+        f"{count} recording{'s' if count > 1 else ''} of `{machine.name}`; n = {len(results)} of at most"
         f" {len(run.plan.trials)} planned trials. {against}{took}",
         table(("figure", "count (95 % Wilson interval)"), list(headline(run).items())),
         "By what was put in:\n\n" + by_kind(run),

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from pierburg_ros.effects import EFFECT
 from pierburg_ros.proof.real.trial import UNTOUCHED
 from pierburg_ros.proof.score import alternatives
 
@@ -75,7 +74,6 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
     kind, true = truth["kind"], truth["true"]
     effects, drifted = names(diagnosis)
     before, drifted_before = names(untouched)
-    own = kind in EFFECT
 
     def is_named(effects: set[str], drifted: set[str]) -> bool:
         return kind in effects or any(name in drifted for name in true)
@@ -96,7 +94,7 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
         drifted=tuple(sorted(drifted)),
         named=bool(true) and is_named(effects, drifted),
         tied=bool(true) and any({kind, *true} & tie for tie in alternatives(diagnosis)),
-        already=bool(true) and own and is_named(before, drifted_before),
+        already=bool(true) and is_named(before, drifted_before),
         true=expected,
         found=found,
         within=within,

@@ -59,6 +59,7 @@ def test_a_wrong_number_is_named_by_its_drift():
     result = score(wrong, naming(drifted=["armature_resistance"]), NOTHING)
     assert result.named and result.found == 2.0 and result.within
     assert not score(wrong, naming(drifted=["torque_constant"]), NOTHING).named
+    assert score(wrong, naming(drifted=["armature_resistance"]), naming(drifted=["armature_resistance"])).already
 
 
 def test_any_effect_in_an_untouched_recording_is_one_more():
