@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
-from pierburg_ros.diagnosis.remainder.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
@@ -57,7 +58,7 @@ def remainder(
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := supported(data, found.nominal, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := _named(found, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -70,6 +71,12 @@ def remainder(
         known = estimates(estimator, base, pool.map)
     confirmed = shape.after < CONFIRMED * shape.before
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
+
+
+def _named(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+    """What may be named beside what remains."""
+    beside = found.beside or supported(found.data, found.nominal, pool, progress)
+    return beside.named
 
 
 def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:

@@ -51,9 +51,7 @@ from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 
 
-def document(
-    found: Found, conclusion: Conclusion, parts: Shares, limits: Limits, stopped: bool = False
-) -> Diagnosis:
+def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits, stopped: bool = False) -> Diagnosis:
     """The whole document; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)

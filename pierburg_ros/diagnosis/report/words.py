@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
-from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
+from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
@@ -186,7 +186,9 @@ def untested(effects: Sequence[str]) -> list[str]:
     if not effects:
         return []
     listed = ", ".join(numbers.words(effect) for effect in effects)
-    return [f"There was no time to look how much of these is ruled out: {listed}. Give more with --budget or --thorough."]
+    return [
+        f"There was no time to look how much of these is ruled out: {listed}. Give more with --budget or --thorough."
+    ]
 
 
 def _separating(name: str, tie: Sequence[str], stops: bool) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
 from pierburg_ros.diagnosis.search.selection import overlooks
+from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
@@ -37,7 +39,8 @@ class Found:
 
     `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
     name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
-    because its budget of candidates was spent.
+    because its budget of candidates was spent. `beside` is what the recordings say counted against what remains, None
+    where it has not come to that.
     """
 
     data: Data
@@ -49,6 +52,7 @@ class Found:
     estimates: dict[str, Estimate]
     recalibrated: Fit
     exhausted: bool
+    beside: Beside | None = None
 
     def of_size(self, size: int) -> list[Fit]:
         """The fits of explanations of `size` quantities."""
@@ -71,9 +75,11 @@ def search(
     """Search what `nominal` lacks in `data`, `jobs` fits at a time.
 
     Where an effect shows only in samples that validate, the search is made again with these training as well. At the
-    `deadline`, or after Ctrl-C, what has been found by then is taken.
+    `deadline`, or after Ctrl-C, what has been found by then is taken; without one all is tried, however little it
+    promises.
     """
     deadline = deadline or Deadline()
+    beam = beam or Beam(resigns=not math.isinf(deadline.left))
     growing = deadline.part(GROWING)
     tell, begun = _checked(progress, growing), list[Search]()
     done = growing.attempt(lambda: _grown(data, nominal, tell, jobs, beam, growing, begun), None)
@@ -86,7 +92,9 @@ def search(
     if chosen.ratio <= EXPLAINED:
         final, known = deadline.attempt(lambda: _last_values(found, chosen, jobs, deadline), (final, known))
     fits = dict(found.fits)
-    return Found(found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted)
+    return Found(
+        found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted, found.beside
+    )
 
 
 def _grown(
@@ -105,7 +113,8 @@ def _grown(
         if overlooks(found.run(), found.whole):
             found = Search(with_validation(data), nominal, pool, progress, beam)
             found.run()
-        fit_rivals(found, found.preferred())
+        if not found.resigned:
+            fit_rivals(found, found.preferred())
     return found
 
 

@@ -4,9 +4,9 @@ import pytest
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
-from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
 from pierburg_ros.diagnosis.schema import BaseParameter, Effect, NotTestable
+from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 
 TIED = Effect(
