@@ -100,9 +100,11 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Callable[[st
             break
         weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
         before, reached = reached.left, weighed.scored
-        carrying = _without(weighed, _weak, data, nominal, pool)
-        more = bool(carrying.weights) and len(carrying.weights) > (len(named.weights) if named else 0)
-        if more:
+        # who carries that share of the evidence leaves no more of it
+        carrying = None
+        if reached.left <= (1.0 - CARRIED) * begun:
+            carrying = _without(weighed, _weak, data, nominal, pool)
+        if carrying and len(carrying.weights) > (len(named.weights) if named else 0):
             named = carrying
         elif named is not None or reached.left > BARELY * before:
             break

@@ -4,8 +4,8 @@ import pytest
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
-from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
-from pierburg_ros.diagnosis.schema import BaseParameter, Effect, NotTestable
+from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
+from pierburg_ros.diagnosis.schema import BaseParameter, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 
@@ -30,6 +30,21 @@ TIED = Effect(
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
+
+
+def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -> None:
+    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.01, final_rmse=0.004)
+    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
+    said = summary("missing_physics", [TIED], {}, [], fit, "V")
+    assert said.startswith(
+        "The model lacks viscous friction, or armature resistance and torque constant together, which fit alike. "
+    )
+    spring = BaseParameter(
+        nominal=0.1, value=0.2, unit="N.m", ci95=None, identifiable=True, drifted=True,
+        indistinguishable_from=[["coulomb_friction"]],
+    )  # fmt: skip
+    said = summary("parameter_drift", [], {"spring_preload": spring}, [], fit, "V")
+    assert "instead of 0.1, or coulomb friction, which fit alike. " in said
 
 
 def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
