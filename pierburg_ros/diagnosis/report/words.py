@@ -84,10 +84,14 @@ def by_grid() -> str:
 
 
 def by_recordings_left_out(said: LeftOut, unit: str) -> str:
-    """Why an effect is named where no explanation accounts for all."""
+    """Why an effect is named where no explanation accounts for all, and which recordings share it."""
+    shared = said.helped == said.parts
+    on = f", on {', '.join(said.recordings)}" if said.recordings else ""
+    some = f"it helps in {said.helped} of {said.parts} parts{on}"
+    where = "all recordings share it" if shared else some
     return (
         f"On recordings left out of the fit the error is {said.without:.3g} {unit} without it and {said.beside:.3g} "
-        f"{unit} with it; it helps in {said.helped} of {said.parts} parts. Other physics may stand behind it."
+        f"{unit} with it; {where}. Other physics may stand behind it."
     )
 
 

@@ -23,10 +23,11 @@ TIED = Effect(
     [
         (Support(0.99, gain=812.34), "leaves 812 more in chi-squared"),
         (Support(1.0), "All samples lie on this grid"),
-        (Support(0.8, left_out=LeftOut(0.0213, 0.0104, 3, 4)), "0.0104 V with it; it helps in 3 of 4"),
+        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
+        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
     ],
-    ids=["evidence", "grid", "recordings left out", "beside what remains"],
+    ids=["evidence", "grid", "some recordings", "all recordings", "beside what remains"],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
