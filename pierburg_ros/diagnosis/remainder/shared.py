@@ -26,7 +26,7 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
-from pierburg_ros.estimation.likelihood import TIED, repetition
+from pierburg_ros.estimation.likelihood import repetition
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.plant import Model
 
@@ -74,12 +74,13 @@ def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fi
     chosen = min(settled, key=lambda fit: fit.ratio)
     parts = _parts(nominal, folds, chosen)
     while len(chosen.explanation.variants) < MOST:
-        fits = _grown(found, data, chosen, pool)
+        tasks = _tasks(found, data, chosen)
+        fits = _grown(data, nominal, chosen, tasks, pool)
         left_out = pool.map(lambda fit: _parts(nominal, folds, fit), fits)
         gains = [_gain(parts, each) for each in left_out]
         best = int(np.argmax(gains))
         progress(fits[best].explanation.label)
-        if gains[best] <= TIED:
+        if gains[best] <= _by_chance(len(tasks)):
             break
         chosen = _settled(data, nominal, fits[best].explanation, fits[best].values)
         parts = _parts(nominal, folds, chosen)
@@ -113,10 +114,17 @@ def _folds(data: Data) -> Folds:
     return pairs
 
 
-def _grown(found: Found, data: Data, chosen: Fit, pool: Executor) -> list[Fit]:
+def _by_chance(candidates: int) -> float:
+    """What the best of so many candidates gains in -2 log likelihood if none of them acts: about the largest of as many
+    squares of normal variables."""
+    return 2.0 * math.log(candidates)
+
+
+def _grown(
+    data: Data, nominal: Model, chosen: Fit, tasks: Sequence[tuple[Explanation, Sequence[Start]]], pool: Executor
+) -> list[Fit]:
     """First fits with one more effect, the best of all that may be added."""
-    tasks = _tasks(found, data, chosen)
-    seen = pool.map(lambda task: _brief_fit(data, found.nominal, chosen, task), tasks)
+    seen = pool.map(lambda task: _brief_fit(data, nominal, chosen, task), tasks)
     return sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:TRIED]
 
 

@@ -103,7 +103,8 @@ class Search:
             self._fit_most_promising(seeds)
             if self._complete(size + 1):
                 return
-            self.refine(self.of_size(size))
+            if not self.resigned:
+                self.refine(self.of_size(size))
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
