@@ -189,8 +189,8 @@ def _left_out(data: Data, nominal: Model, folds: Folds, chosen: Fit, variant: Va
     lacking = _parts(nominal, folds, bare)
     helped = beside.errors < lacking.errors
     recordings = tuple(name for (_, left), helps in zip(folds, helped, strict=True) if helps for name in _names(left))
-    means = (parts.mean * data.noise for parts in (lacking, beside))
-    return LeftOut(*means, int(np.sum(helped)), len(folds), recordings)
+    without_it, with_it = lacking.mean * data.noise, beside.mean * data.noise
+    return LeftOut(without_it, with_it, int(np.sum(helped)), len(folds), recordings)
 
 
 def _names(data: Data) -> list[str]:
