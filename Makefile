@@ -1,4 +1,5 @@
-# `make demo` shows the main job, `make test` runs every check, `make quick` the quick tests; all set up .venv first, once.
+# `make demo` shows the main job, `make test` runs every check, `make quick` the quick tests, `make site`
+# builds the documentation; all set up .venv first, once.
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -8,19 +9,22 @@ COLCON := build/colcon
 PYTHON := $(shell for name in python3.13 python3.12 python3.11 python3.10 python3 python; do \
 	"$$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' \
 	2>/dev/null && echo "$$name" && break; done)
+# That with which the oldest versions still come as wheels.
+LOWEST_PYTHON := $(shell for name in python3.12 python3.11 python3.10; do \
+	"$$name" -c 'import ensurepip, venv' 2>/dev/null && echo "$$name" && break; done)
 
-.PHONY: demo test quick lint types library nodes colcon benchmarks clean
+.PHONY: demo test quick lint types site library nodes colcon lowest alone benchmarks clean
 
 demo: $(STAMP)
 	$(BIN)/pierburg demo
 
-test: lint types library nodes colcon
+test: lint types site library nodes colcon
 
-$(STAMP): setup.py pyproject.toml
+$(STAMP): setup.py pyproject.toml constraints/newest.txt
 	@test -n "$(PYTHON)" || { echo "No Python 3.10 to 3.13 with venv found; install one (e.g. python3-venv)."; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet 'setuptools>=70.1'
-	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test]'
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,docs]' --constraint constraints/newest.txt
 	@touch $@
 
 lint: $(STAMP)
@@ -28,6 +32,10 @@ lint: $(STAMP)
 
 types: $(STAMP)
 	$(BIN)/mypy
+
+# The documentation, build/site/index.html; a warning is an error.
+site: $(STAMP)
+	$(BIN)/sphinx-build -q -W --keep-going docs build/site
 
 library: $(STAMP)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m 'not ros'
@@ -53,6 +61,24 @@ colcon: $(COLCON)/.installed
 	$(COLCON)/bin/python -m colcon --log-base build/log build --build-base build/colcon_build \
 		--install-base build/install --paths . --event-handlers console_direct+
 	PIERBURG_INSTALL_SPACE=$(CURDIR)/build/install $(BIN)/python -m pytest test/nodes/test_install_space.py
+
+# The quick tests with the oldest versions that setup.py allows: with Python 3.12, ROS 2 Jazzy's, if it is there.
+lowest:
+	@test -x build/lowest/bin/python || $(LOWEST_PYTHON) -m venv build/lowest
+	build/lowest/bin/python -m pip install --quiet 'setuptools>=70.1'
+	build/lowest/bin/python -m pip install --quiet --no-build-isolation --editable '.[test]' --constraint constraints/lowest.txt
+	build/lowest/bin/python -m pytest -n auto --dist loadfile -m 'not ros and not search'
+
+# The source distribution, installed into an environment of its own and run there, away from the sources.
+alone: $(STAMP)
+	rm -rf build/alone && mkdir -p build/alone
+	$(BIN)/python -c 'from setuptools import build_meta; build_meta.build_sdist("build/alone")'
+	$(PYTHON) -m venv build/alone/venv
+	build/alone/venv/bin/python -m pip install --quiet build/alone/*.tar.gz --constraint constraints/newest.txt
+	printf 'time,duty\n0,0\n0.5,0.2\n1.5,0.1\n2.5,0.28\n3.5,0.05\n4.5,0.2\n5.5,0\n' > build/alone/duty.csv
+	cd build/alone && venv/bin/pierburg simulate --actuator pierburg --duty duty.csv --noise 0.003 --output simulated
+	cd build/alone && venv/bin/pierburg replay simulated/simulated.mcap --actuator pierburg --output replayed
+	cd build/alone && venv/bin/pierburg diagnose simulated/simulated.mcap --output diagnosed
 
 # Writes docs/benchmarks.md, in about 25 minutes on an otherwise idle machine.
 benchmarks: $(STAMP)

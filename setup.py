@@ -2,10 +2,14 @@
 
 import sys
 from glob import glob
+from pathlib import Path
+from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = "pierburg_ros"
+MANIFEST = ElementTree.parse(Path(__file__).parent / "package.xml")
+"""The one place of the version; ROS and the build farm read it there."""
 NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
 COMMANDS = (
     "demo",
@@ -14,6 +18,7 @@ COMMANDS = (
     "identify",
     "replay",
     "diagnose",
+    "fleet",
     "inspect",
     "export",
     "actuator",
@@ -43,8 +48,10 @@ ROS_WHEELS = [
     "ros-jazzy-lifecycle-msgs",
 ]
 MUJOCO = ["mujoco>=3.13; python_version >= '3.11'"]
+FLEET = ["dask", "distributed", "pyarrow", "fsspec", "pandas"]
 TEST_TOOLS = [
     *MUJOCO,
+    *FLEET,
     "pytest",
     "pytest-rerunfailures",
     "pytest-xdist",
@@ -55,12 +62,15 @@ TEST_TOOLS = [
     "scikit-fuzzy",
     "networkx",
     "packaging",
-    "pandas",
+    "polars",
+    "duckdb",
 ]
+
+DOCS = ["sphinx", "myst-parser", "furo"]
 
 setup(
     name=PACKAGE,
-    version="0.1.0",
+    version=MANIFEST.findtext("version"),
     description="Simulate, control and diagnose the Pierburg mechatronic actuator over ROS 2.",
     license="Apache-2.0",
     maintainer="pierburg_ros developers",
@@ -75,6 +85,8 @@ setup(
             "cli/*.yaml",
             "comparison/*.html",
             "diagnosis/report/*.html",
+            "fleets/*.html",
+            "fleets/*.js",
             "identification/*.html",
             "pages/*.css",
             "pages/*.html",
@@ -85,29 +97,38 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/launch", glob("launch/*.launch.py")),
+        (f"share/{PACKAGE}/layouts", sorted([*glob("layouts/*.json"), *glob("layouts/*.xml")])),
         (f"share/{PACKAGE}/urdf", glob("urdf/*.urdf")),
         (f"share/{PACKAGE}/sros2", glob("sros2/*.policy.xml")),
         (f"share/{PACKAGE}/config", glob("config/*.yaml")),
     ],
-    install_requires=[
+    install_requires=[  # the oldest versions that `make lowest` tests
         "setuptools",
-        "numpy",
-        "scipy",
-        "numba",
+        "numpy>=1.26",
+        "scipy>=1.11.2",
+        "numba>=0.62",
         "mcap>=1.6",
-        "rosbags",
-        "plotly",
-        "matplotlib",
-        "rich",
-        "typer",
-        "pydantic>=2",
-        "jinja2",
-        "PyYAML",
-        "threadpoolctl",
-        "zstandard",
-        "lz4",
+        "rosbags>=0.11.6",
+        "plotly>=6.0",
+        "matplotlib>=3.8",
+        "rich>=13.7",
+        "typer>=0.12",
+        "pydantic>=2.6",
+        "jinja2>=3.1.2",
+        "PyYAML>=6.0.1",
+        "threadpoolctl>=3.2",
+        "zstandard>=0.22",
+        "lz4>=4.3.2",
     ],
-    extras_require={"ros": ROS_WHEELS, "test": TEST_TOOLS, "tables": ["pandas"], "mujoco": MUJOCO},
+    extras_require={
+        "ros": ROS_WHEELS,
+        "test": TEST_TOOLS,
+        "docs": DOCS,
+        "tables": ["pandas"],
+        "fleet": FLEET,
+        "mujoco": MUJOCO,
+        "rerun": ["rerun-sdk>=0.24"],
+    },
     entry_points={
         "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
     },

@@ -1,5 +1,7 @@
-"""The export to MuJoCo beside our simulator, effect by effect: python benchmarks/export.py [RUNS] prints the table of
-docs/export.md."""
+"""The export to MuJoCo beside our simulator, effect by effect.
+
+`python benchmarks/export.py [RUNS]` prints the table of docs/export.md.
+"""
 
 import runpy
 import sys

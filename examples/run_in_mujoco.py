@@ -1,4 +1,4 @@
-"""Runs an exported model in MuJoCo under a duty: python run_in_mujoco.py MODEL.xml DUTY.csv OUT.csv
+"""Runs an exported model in MuJoCo under a duty, `python run_in_mujoco.py MODEL.xml DUTY.csv OUT.csv`.
 
     pierburg export examples/worn_valve.yaml --to mujoco --output valve.xml
     python examples/run_in_mujoco.py valve.xml examples/bench.csv mujoco.csv

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pierburg_ros.errors import InputError
+    from pierburg_ros.fleets.fleet import Fleet, fleet
     from pierburg_ros.library.comparing import Comparison, compare
     from pierburg_ros.library.diagnosing import Diagnosis, diagnose
     from pierburg_ros.library.exporting import Export
@@ -30,6 +31,7 @@ __all__ = [
     "Comparison",
     "Diagnosis",
     "Export",
+    "Fleet",
     "Identification",
     "InputError",
     "Model",
@@ -37,6 +39,7 @@ __all__ = [
     "Simulation",
     "compare",
     "diagnose",
+    "fleet",
     "identify",
     "read",
     "simulate",
@@ -46,6 +49,7 @@ _HOME = {
     "Comparison": "library.comparing",
     "Diagnosis": "library.diagnosing",
     "Export": "library.exporting",
+    "Fleet": "fleets.fleet",
     "Identification": "library.identifying",
     "InputError": "errors",
     "Model": "library.model",
@@ -53,6 +57,7 @@ _HOME = {
     "Simulation": "library.simulation",
     "compare": "library.comparing",
     "diagnose": "library.diagnosing",
+    "fleet": "fleets.fleet",
     "identify": "library.identifying",
     "read": "library.reading",
     "simulate": "library.simulation",

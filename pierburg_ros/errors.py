@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from difflib import get_close_matches
+
 LONGEST = 285
 """Characters of a message at most: with the command's name before it, 300, which four lines of a terminal hold."""
 TAIL = 110
 """Characters of its end that a shortened message keeps: what to do stands there."""
+
+MOST_COMPARED = 1000
+"""Names that are compared with one that is wrong: more would take long and help nobody."""
 
 
 class InputError(ValueError):
@@ -24,3 +30,9 @@ def one_line(text: str) -> str:
 def printable(text: str) -> str:
     """`text` with what a terminal obeys or does not show, as control characters, written as escapes."""
     return "".join(mark if mark.isprintable() else mark.encode("unicode_escape").decode() for mark in text)
+
+
+def near(name: str, known: Collection[str]) -> str:
+    """` Did you mean duty?` where one of the `known` names is close to `name`; else nothing."""
+    found = get_close_matches(name, list(known)[:MOST_COMPARED], 1)
+    return f" Did you mean {found[0]}?" if found else ""

@@ -1,4 +1,4 @@
-"""The effect that CONTRIBUTING.md adds, added to a copy of the package and used there.
+"""The effect that docs/extending/effect.md adds, added to a copy of the package and used there.
 
 The copy shares the cache of compiled kernels with the untouched package, which must not lend it an old result.
 """
@@ -68,8 +68,8 @@ print(json.dumps([found.values["output_filter.time_constant"], base.ratio, found
 
 
 def add_example(root: Path) -> None:
-    """Follow CONTRIBUTING.md in the package under `root`."""
-    file, line = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(), flags=re.DOTALL)
+    """Follow docs/extending/effect.md in the package under `root`."""
+    file, line = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extending/effect.md").read_text(), flags=re.DOTALL)
     effects, path = root / PACKAGE / "effects", root / PACKAGE / "plant/signal_path.py"
     (effects / "output_filter.py").write_text(textwrap.dedent(file))
     replace(

@@ -17,6 +17,8 @@ ALLOWED = {
     "processes": {"errors"},
     "deadline": set(),
     "workers": {"errors", "deadline"},
+    "version": set(),
+    "executors": {"errors", "processes", "version", "workers"},
     "intake": {"errors"},
     "effects": {"errors", "kernel", "intake", "parameter"},
     "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
@@ -34,20 +36,35 @@ ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
 ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
-ALLOWED["proof"] = ALLOWED["diagnosis"] | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
+ALLOWED["proof"] = (
+    ALLOWED["diagnosis"]
+    | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
+    | {
+        "executors",
+        "version",
+    }
+)
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes"} | {"identification", "export"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "workers"}
+ALLOWED["viewers"] = {"errors", "arrays", "recording"}
+ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "version"} | {
+    "identification",
+    "export",
+    "viewers",
+}
+ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers"}
 ALLOWED["__main__"] = {"cli"}
-ALLOWED["__init__"] = {"errors", "library", "recording"}
+ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "diagnosis": {
         "schema": set(),
+        "cleaning": set(),
         "evidence": {"schema"},
         "search": {"evidence"},
         "location": {"schema", "evidence"},
         "remainder": {"evidence", "search"},
+        "disturbance": {"search", "remainder"},
         "limits": {"search"},
         "verdict": {"schema", "search", "remainder"},
         "result": {"schema"},
@@ -71,7 +88,11 @@ ROOMS = {
         "gear": {"torques", "motion"},
         "signal_path": {"torques", "motion", "gear", "state"},
     },
-    "proof": {"formulation": set()},
+    "proof": {
+        "dirt": set(),
+        "formulation": set(),
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+    },
     "recording": {
         "formats": {"columns", "loss"},
         "signals": {"formats"},
@@ -79,7 +100,18 @@ ROOMS = {
         "message_types": {"formats", "signal_map", "signals"},
         "decoding": {"formats", "message_types", "signal_map", "signals"},
         "topics": {"decoding", "formats", "signal_map", "signals"},
-        "read": {"clocks", "columns", "formats", "loss", "recording", "signal_map", "signals", "tables", "topics"},
+        "read": {
+            "clocks",
+            "columns",
+            "file_times",
+            "formats",
+            "loss",
+            "recording",
+            "signal_map",
+            "signals",
+            "tables",
+            "topics",
+        },
         "inspection": {
             "clocks",
             "columns",

@@ -7,9 +7,13 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
+from zipfile import ZipFile
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.version import Version
 from support.launch_file import launched
 
 from pierburg_ros.control import SETTINGS, Settings
@@ -23,6 +27,8 @@ from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
 MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
+MONITOR_ALONE = ROOT / "launch" / "monitor.launch.py"
+REPLAY = ROOT / "launch" / "replay.launch.py"
 MANIFEST = ElementTree.parse(ROOT / "package.xml").getroot()
 SETUP = (ROOT / "setup.py").read_text()
 NOT_OF_ROS = re.compile(r"python3-")
@@ -43,22 +49,63 @@ def test_the_manifest_is_format_3_with_a_valid_maintainer():
 
 def test_manifest_and_setup_agree():
     assert MANIFEST.findtext("name") == "pierburg_ros"
-    assert f'version="{MANIFEST.findtext("version")}"' in SETUP
+    assert not re.search(r"version=['\"]", SETUP), "the version is read from package.xml"
 
 
 def test_every_ros_package_that_the_nodes_import_is_a_dependency():
     from test_imports import ROS, SOURCES, imported
 
     used = {name.split(".")[0] for source in SOURCES for name in imported(source)} & ROS
-    used |= {name.split(".")[0] for launch in (LAUNCH, MONITORED) for name in imported(launch)} & ROS
+    used |= {name.split(".")[0] for launch in ROOT.glob("launch/*.py") for name in imported(launch)} & ROS
     used |= set(re.findall(r'package="(\w+)"', MONITORED.read_text())) - {"pierburg_ros"}
     assert used == {name for name in dependencies() if not NOT_OF_ROS.match(name)}
 
 
 def test_the_wheels_are_an_extra_and_not_a_requirement():
-    assert 'extras_require={"ros": ROS_WHEELS' in SETUP
+    assert '"ros": ROS_WHEELS' in SETUP
     required = SETUP.split("install_requires=")[1].split("]")[0]
     assert "ros-" not in required
+
+
+def pinned(file):
+    """Every version that a file of constraints names, by the requirement's name."""
+    found = {}
+    for line in (ROOT / "constraints" / file).read_text().splitlines():
+        if not line.startswith("#"):
+            requirement = Requirement(line)
+            found.setdefault(requirement.name, []).append(requirement)
+    return found
+
+
+def test_the_oldest_versions_tested_are_those_that_are_allowed():
+    """No version without bounds but that of setuptools, which colcon and ROS choose."""
+    lowest = {name: str(each.specifier).removeprefix("==") for name, (each,) in pinned("lowest.txt").items()}
+    allowed = {
+        each.name: str(each.specifier).removeprefix(">=") for each in requirements() if each.name != "setuptools"
+    }
+    assert set(lowest) == set(allowed)
+    assert {name: Version(number) for name, number in lowest.items()} == {
+        name: Version(number) for name, number in allowed.items()
+    }
+
+
+@pytest.mark.parametrize("python", ["3.10", "3.11", "3.12", "3.13"])
+def test_the_newest_versions_tested_are_allowed_and_one_for_each_python(python):
+    newest = pinned("newest.txt")
+    for required in requirements():
+        if required.name != "setuptools":
+            held = [
+                each
+                for each in newest[required.name]
+                if each.marker is None or each.marker.evaluate({"python_version": python})
+            ]
+            assert len(held) == 1
+            assert required.specifier.contains(str(held[0].specifier).removeprefix("=="))
+
+
+def requirements():
+    """What setup.py requires to run."""
+    return [Requirement(line) for line in declared("install_requires", "sdist")]
 
 
 def test_files_that_are_installed_exist():
@@ -108,15 +155,52 @@ def test_the_launch_file_leaves_the_recorder_out_when_told():
     assert [node["name"] for node in nodes] == ["plant", "controller"]
 
 
+def test_the_monitor_is_launched_with_parameters_that_it_has():
+    arguments, (node,) = launched(MONITOR_ALONE, namespace="left", angle="hall_voltage", simulated_time="true")
+    assert all(len(each["description"]) > 20 for each in arguments.values())
+    assert node["executable"] in entry_points("install") and node["namespace"] == "left"
+    accepted = {each.name: each for each in MONITOR}
+    (parameters,) = node["parameters"]
+    assert parameters.pop("use_sim_time") is True
+    assert parameters["angle_topic"] == "hall_voltage"
+    for name, value in parameters.items():
+        assert accepted[name].accepted(value) == value
+    for name in ("angle", "duty"):
+        assert set(arguments[name]["choices"]) == set(accepted[f"{name}_topic"].choices)
+
+
+def test_a_replay_is_launched_as_the_command_that_a_person_would_type(tmp_path):
+    arguments, (process,) = launched(REPLAY, recording="run.mcap", output=str(tmp_path / "out"))
+    assert all(len(each["description"]) > 20 for each in arguments.values())
+    executable, *command = process["cmd"]
+    assert executable == "pierburg_ros/replay" and "replay" in entry_points("install")
+    assert command == ["run.mcap", "--actuator", "pierburg", "--output", str(tmp_path / "out")]
+    _, (process,) = launched(REPLAY, recording="run.mcap", model="model.yaml", signals="map.yaml")
+    assert process["cmd"][2:6] == ["--model", "model.yaml", "--signals", "map.yaml"]
+
+
+def test_a_replay_opens_its_result_where_there_is_one():
+    _, (process, handler) = launched(REPLAY, recording="run.mcap", viewer="plotjuggler")
+    assert handler.target_action is process
+    (viewer,) = handler.on_exit(SimpleNamespace(returncode=0), None)
+    assert handler.on_exit(SimpleNamespace(returncode=2), None) == []
+    assert viewer["cmd"][:3] == ["plotjuggler/plotjuggler", "--datafile", "replayed/replay.mcap"]
+    assert Path(viewer["cmd"][4]).exists()
+
+
 def entry_points(*arguments):
     """Executables that setup.py declares when it is called with these arguments."""
+    return dict(line.split(" = ") for line in declared("entry_points['console_scripts']", *arguments))
+
+
+def declared(what, *arguments):
+    """The items that setup.py gives for `what` when it is called with these arguments."""
     code = (
         "import sys; from distutils.core import run_setup; "
-        "print(*run_setup('setup.py', sys.argv[1:], stop_after='init').entry_points['console_scripts'], sep=chr(10))"
+        f"print(*run_setup('setup.py', sys.argv[1:], stop_after='init').{what}, sep=chr(10))"
     )
     command = [sys.executable, "-c", f"import setuptools; {code}", *arguments]
-    lines = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-    return dict(line.split(" = ") for line in lines)
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
 @pytest.mark.parametrize("arguments", [["install", "--record", "files"], ["develop", "--editable"]])
@@ -131,22 +215,51 @@ def test_colcon_gets_an_executable_for_every_node_and_command(arguments):
         assert callable(getattr(import_module(module), function))
 
 
-def test_pip_puts_the_one_command_on_the_path(tmp_path):
-    source, wheels, prefix = tmp_path / "source", tmp_path / "wheels", tmp_path / "prefix"
-    source.mkdir()
-    for name in ("pierburg_ros", "launch", "config", "resource", "urdf", "sros2"):
-        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml"):
-        shutil.copy(ROOT / name, source)
-    pip = [sys.executable, "-m", "pip", "--quiet"]
-    quick = ["--no-deps", "--no-index"]
-    subprocess.run([*pip, "wheel", *quick, "--no-build-isolation", "-w", wheels, source], check=True)
-    apart = ["--no-compile", "--ignore-installed", "--prefix", prefix]  # leaves the environment of the tests alone
-    subprocess.run([*pip, "install", *quick, *apart, *wheels.iterdir()], check=True)
-    assert [path.name for path in (prefix / "bin").iterdir()] == ["pierburg"]
-    installed = {path.name for path in prefix.rglob("*") if path.is_file()}
-    data = [path for path in (ROOT / "pierburg_ros").rglob("*") if path.suffix in (".yaml", ".html", ".typed")]
-    assert data and installed >= {path.name for path in data}
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel that pip makes of the source distribution, in an empty folder."""
+    folder = tmp_path_factory.mktemp("distribution")
+    source = folder / "source"
+    left_out = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "docs", "install", "log", "test")
+    shutil.copytree(ROOT, source, ignore=left_out)
+    make = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
+    subprocess.run([sys.executable, "-c", make, folder], cwd=source, check=True, capture_output=True)
+    (distribution,) = folder.glob("*.tar.gz")
+    pip = [sys.executable, "-m", "pip", "--quiet", "wheel", "--no-deps", "--no-index", "--no-build-isolation"]
+    subprocess.run([*pip, "-w", folder / "wheels", distribution], check=True)
+    (made,) = (folder / "wheels").iterdir()
+    return made
+
+
+def test_the_wheel_of_the_source_distribution_holds_every_file_of_the_package(wheel):
+    with ZipFile(wheel) as archive:
+        held = {name for name in archive.namelist() if ".dist-info/" not in name}
+    package = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "pierburg_ros").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    share = f"{wheel.name.removesuffix('-py3-none-any.whl')}.data/data/share/pierburg_ros"
+    shared = {
+        f"{share}/{path.relative_to(ROOT).as_posix()}"
+        for pattern in ("launch/*.launch.py", "config/*.yaml", "layouts/*.*[ln]", "urdf/*.urdf", "sros2/*.xml")
+        for path in ROOT.glob(pattern)
+    }
+    index = f"{share.removesuffix('/pierburg_ros')}/ament_index/resource_index/packages/pierburg_ros"
+    assert held == package | shared | {index, f"{share}/package.xml"}
+
+
+def test_the_version_of_the_wheel_is_that_of_the_manifest(wheel):
+    with ZipFile(wheel) as archive:
+        (metadata,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        assert f"\nVersion: {MANIFEST.findtext('version')}\n" in archive.read(metadata).decode()
+
+
+def test_pip_puts_the_one_command_on_the_path(wheel, tmp_path):
+    apart = ["--no-compile", "--ignore-installed", "--prefix", tmp_path]  # leaves the environment of the tests alone
+    pip = [sys.executable, "-m", "pip", "--quiet", "install", "--no-deps", "--no-index"]
+    subprocess.run([*pip, *apart, wheel], check=True)
+    assert [path.name for path in (tmp_path / "bin").iterdir()] == ["pierburg"]
 
 
 def parameters(file):

@@ -15,7 +15,7 @@ from pierburg_ros.actuators.units import Motion
 from pierburg_ros.actuators.values import described
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Drive, Load, Sensor
-from pierburg_ros.errors import InputError, printable
+from pierburg_ros.errors import InputError, near, printable
 from pierburg_ros.intake import parsed, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
@@ -109,7 +109,7 @@ class _Description(_Strict):
         self._possible()
         for effect, values in self.effects.items():
             if effect not in EFFECT:
-                raise ValueError(f"effects has unknown {effect}; known: {', '.join(EFFECT)}")
+                raise ValueError(f"effects has unknown {effect}; known: {', '.join(EFFECT)}.{near(effect, EFFECT)}")
             _check_effect(effect, values)
         return self
 
@@ -122,7 +122,9 @@ class _Description(_Strict):
         if missing := sorted(needed - set(self.parameters)):
             raise ValueError(f"parameters lacks {', '.join(missing)}, needed with {kind}")
         if unknown := sorted(set(self.parameters) - set(UNITS)):
-            raise ValueError(f"parameters has unknown {', '.join(unknown)}; known: {', '.join(UNITS)}")
+            raise ValueError(
+                f"parameters has unknown {', '.join(unknown)}; known: {', '.join(UNITS)}.{near(unknown[0], UNITS)}"
+            )
         if idle := sorted(set(self.parameters) - needed - optional):
             raise ValueError(f"parameters has {', '.join(idle)}, without meaning with {kind}; leave it out")
 
@@ -143,7 +145,7 @@ def _check_effect(effect: str, values: dict[str, float]) -> None:
     """Refuse an effect whose numbers are unknown or missing."""
     declared = EFFECT[effect]
     if unknown := sorted(set(values) - set(declared.names)):
-        raise ValueError(f"{effect} has no parameter {', '.join(unknown)}")
+        raise ValueError(f"{effect} has no parameter {', '.join(unknown)}.{near(unknown[0], declared.names)}")
     for parameter in declared.parameters:
         if parameter.name not in values and parameter.default is None:
             raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
@@ -188,6 +190,7 @@ def _text(source: str | Path) -> tuple[str, str]:
     if not path.exists():
         raise InputError(
             f"There is no actuator {source}; expected {' or '.join(SHIPPED)} or the path of a YAML description."
+            f"{near(str(source), SHIPPED)}"
         )
     return text_of(path, FORM), path.name
 

@@ -91,18 +91,17 @@ class Scales:
 def _load_torque(actuator: Actuator, value: dict[str, float], per_current: float) -> float:
     """What is a large torque [N.m] for a drive without a voltage, which has no stall: the load's, or the winding's.
 
-    The weight of a pendulum; a spring at its stop, or a radian from rest without one; what the rated current gives;
-    ten times the friction of a free shaft, or what takes it round in a second where nothing else is known.
+    The weight of a pendulum; a spring at its stop, or its preload without one; what the rated current gives; ten times
+    the friction. Where none of these is known, what turns a shaft on a spring round, or a free one in a second.
     """
     if value.get("gravity_torque"):
         return value["gravity_torque"]
-    travel = actuator.upper_stop - actuator.lower_stop
-    reach = travel if math.isfinite(travel) else 1.0
-    if sprung := abs(value.get("spring_preload", 0.0)) + value.get("spring_stiffness", 0.0) * reach:
+    travel, stiffness = actuator.upper_stop - actuator.lower_stop, value.get("spring_stiffness", 0.0)
+    if sprung := abs(value.get("spring_preload", 0.0)) + (stiffness * travel if math.isfinite(travel) else 0.0):
         return sprung
     if actuator.winding is not None and actuator.drive == "current":
         return per_current * actuator.winding.rated_current
-    return 10.0 * value["coulomb_friction"] or 2.0 * math.pi * value["total_inertia"]
+    return 10.0 * value["coulomb_friction"] or 2.0 * math.pi * (stiffness or value["total_inertia"])
 
 
 def _reading(actuator: Actuator, value: dict[str, float], angle: float, speed: float) -> float:

@@ -8,7 +8,7 @@ from numbers import Real
 
 from pierburg_ros.actuators.actuator import Actuator
 from pierburg_ros.effects import DECLARED, EFFECTS
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
 """Parameters of effects that keep above or below a base parameter."""
@@ -36,7 +36,7 @@ def accepted(actuator: Actuator, name: str) -> tuple[float, float]:
     if name not in DECLARED:
         raise InputError(
             f"There is no parameter {name} in actuator {actuator.name}; expected one of "
-            f"{', '.join(actuator.parameters)} or effect.parameter."
+            f"{', '.join(actuator.parameters)} or effect.parameter.{near(name, [*actuator.parameters, *DECLARED])}"
         )
     declared = DECLARED[name]
     return min(declared.minimum, 0.0), declared.maximum

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from pierburg_ros.audit.balance import in_balance
 from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, FEWEST, Explained, explained
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.reach import DOUBTFUL, impossible
@@ -17,7 +18,7 @@ from pierburg_ros.audit.servo import followed
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.audit.slips import Slip, between_stops, slips
 from pierburg_ros.audit.still import still
-from pierburg_ros.audit.timing import early, shift
+from pierburg_ros.audit.timing import early, shift, wandering
 from pierburg_ros.audit.together import apart
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -69,7 +70,8 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
         return unmoved
     found = followed(signals, given, nominal)
     if not found and given is not None and given.suffices:
-        found = early(Signals.of(recording, TIMED), given) or rescaled(signals, given, nominal)
+        timed = Signals.of(recording, TIMED)
+        found = wandering(timed, given) or early(timed, given) or rescaled(signals, given, nominal)
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []
@@ -82,8 +84,12 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
     found = undone(named, left, nominal) or undone(tuple(between_stops(signals, nominal)), left, nominal)
     if found:
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
-    moves = given is not None and min(given.share, given.agreement) >= ENOUGH
-    return None if moves else unrelated(signals, given, nominal)
+    moves = given is not None and given.share >= ENOUGH
+    return (
+        None
+        if moves and (given.agreement >= ENOUGH or in_balance(signals, nominal))
+        else unrelated(signals, given, nominal)
+    )
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:

@@ -1,4 +1,4 @@
-"""Causality: a shaft may answer its input late, for delays and lags exist, but never before."""
+"""Causality: a shaft may answer its input late, for delays and lags exist, but never before, and always alike."""
 
 from __future__ import annotations
 
@@ -26,6 +26,54 @@ recordings (n = 52)."""
 SELDOM = 5.0
 """Sample intervals between two inputs from which the input is recorded too seldom. Chosen: a controller that runs at a
 fifth of the sensor's rate is rare, and one that is early besides is not run at that rate."""
+
+PARTS = 6
+"""Parts of a recording in which the lag is told by itself. Chosen: each of a minute's has ten seconds; not varied."""
+TOLD = 4
+"""Parts whose lag must be seen for a drift to be told. Derived: two always lie on a line, and three that friction
+displaced may."""
+DRIFTS = 10.0
+"""Samples by which the lag must drift from end to end. Chosen: 20 ms at 500 Hz; less is a small delay at either end."""
+STRAIGHT = 0.15
+"""Share of that drift, beside `EARLY`, by which lags may lie off their line. Chosen: what friction does with the moment
+of a start is less; not varied."""
+
+
+def wandering(signals: Signals, given: Explained) -> Fault | None:
+    """The clocks of input and measured signal run at different rates: the lag grows with time.
+
+    `given` is how the actuator explains a part of these signals.
+    """
+    pieces = Fit(signals, given.model, given.length)
+    bends = [_bends(each, pieces.cuts) for each in (pieces.angle, pieces.simulated(given.model))]
+    parts = np.array_split(np.arange(bends[0].size), PARTS)
+    lags = np.array([_lag(*(each[part] for each in bends)) for part in parts])
+    seen = lags[:, 1] >= SEEN
+    if np.count_nonzero(seen) < TOLD:
+        return None
+    middle = np.array([signals.time[int(np.median(part))] for part in parts])[seen]
+    slope, begin = np.polyfit(middle, lags[seen, 0], 1, w=lags[seen, 1])
+    drift = abs(slope) * signals.duration
+    off = float(np.max(np.abs(lags[seen, 0] - begin - slope * middle)))
+    if drift < DRIFTS or off > EARLY + STRAIGHT * drift:
+        return None
+    share, way = abs(slope) * signals.interval, "fast" if slope < 0.0 else "slow"
+    first, last = (1e3 * signals.interval * (begin + slope * at) for at in (signals.time[0], signals.time[-1]))
+    evidence = (
+        f"The shaft answers the {signals.input} {first:.3g} ms late at the beginning and {last:.3g} ms late at the end,"
+        f" told in {np.count_nonzero(seen)} of {PARTS} parts; what comes before its cause is negative."
+    )
+    mend = f"stamp {signals.input} and {signals.quantity} by one clock: choose it with --time stamp, publish or log"
+    return Fault(signals.name, signals.input, f"clock {100.0 * share:.2g} % {way}", evidence, mend)
+
+
+def _lag(measured: Signal, simulated: Signal) -> tuple[float, float]:
+    """By how many samples `measured` comes after `simulated` where they correlate best, and how well."""
+    lags, correlation = correlated(measured, simulated, BESIDE)
+    if not lags.size:
+        return 0.0, 0.0
+    best = int(np.argmax(correlation))
+    return float(lags[best]), float(correlation[best])
 
 
 def early(signals: Signals, given: Explained) -> Fault | None:

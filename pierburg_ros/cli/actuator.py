@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.actuators.writing import description_text
@@ -24,6 +23,8 @@ from pierburg_ros.identification.description.slips import remarks
 from pierburg_ros.identification.description.told import told
 from pierburg_ros.library.output import write_whole
 from pierburg_ros.library.reading import read
+from pierburg_ros.pages.listing import Listing
+from pierburg_ros.pages.numbers import number, unit
 from pierburg_ros.plant import Model
 
 
@@ -46,7 +47,7 @@ def actuator(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
-) -> None:
+) -> dict[str, object]:
     """Describe an actuator, from answers or from a recording, or check a description.
 
     `new` asks what it needs, or identifies it from a recording and marks what it guessed.
@@ -55,8 +56,7 @@ def actuator(
     """
     console = terminal()
     if action is Action.check:
-        check(console, file)
-        return
+        return check(console, file)
     if file.exists() and not overwrite:
         raise InputError(f"{file} is there already, expected a new file. Name another one, or add --overwrite.")
     if from_recording is None:
@@ -68,6 +68,7 @@ def actuator(
     text = description_text(content, file.name)
     write_whole(file, text)
     console.print(f"Wrote {file}. Check it: pierburg actuator check {file}", soft_wrap=True)
+    return {"file": str(file), "description": text}
 
 
 def asked(question: Question) -> str:
@@ -81,19 +82,29 @@ def asked(question: Question) -> str:
         ) from None
 
 
-def check(console: Console, file: Path) -> None:
-    """Print derived numbers, remarks, and what a standard excitation of the description would tell."""
+def check(console: Console, file: Path) -> dict[str, object]:
+    """Print and give derived numbers, remarks, and what a standard excitation of the description would tell."""
     described = read_actuator(str(file))
-    shown = Table(title=Text(f"{described.title}: what the numbers imply"))
-    for heading in ("number", "value", "plausible"):
-        shown.add_column(heading)
-    for each in derived(described):
-        unit = "" if each.unit == "1" else f" {each.unit}"
-        shown.add_row(each.name, f"{each.value:.4g}{unit}", "yes" if each.plausible else "NO")
-    console.print(shown)
-    found = remarks(described)
+    numbers, found = derived(described), remarks(described)
+    rows = [(each.name, number(each.value) + unit(each.unit), "yes" if each.plausible else "NO") for each in numbers]
+    console.print(Listing(("number", "value", "plausible"), rows, f"{described.title}: what the numbers imply"))
     lines = [f"{remark.about}: {remark.what}" for remark in found] or ["Nothing is implausible."]
     console.print("\n".join(lines), soft_wrap=True, markup=False)
     signals = f"{described.input} and {described.quantity.replace('_', ' ')}"
-    reasons = [f"  {name}: {finding.reason}" for name, finding in told(Model.nominal(described)).items()]
+    findings = told(Model.nominal(described))
+    reasons = [f"  {name}: {finding.reason}" for name, finding in findings.items()]
     console.print(f"What a recording of {signals} tells:", *reasons, sep="\n", soft_wrap=True, markup=False)
+    return {
+        "actuator": described.name,
+        "numbers": [
+            {"name": each.name, "value": finite(each.value), "unit": each.unit, "plausible": each.plausible}
+            for each in numbers
+        ],
+        "remarks": [{"about": remark.about, "what": remark.what} for remark in found],
+        "told": {name: finding.reason for name, finding in findings.items()},
+    }
+
+
+def finite(value: float) -> float | None:
+    """The value, or None where JSON has none."""
+    return value if math.isfinite(value) else None

@@ -1,71 +1,173 @@
 """The `pierburg` command and its table of commands.
 
-A command is a function named like its file, `cli/<name>.py`. Only the one that is called is imported, so that
-listing the commands loads and compiles nothing.
+A command is a function named like its file, `cli/<name>.py`, and an entry in `COMMANDS` with examples. Only the one
+that is called is imported, so that listing the commands loads and compiles nothing.
+
+Nothing else is needed for what all commands share, which `application` adds to every function (`cli.common`): -h, -o
+beside --output, --quiet, --json, examples in the help, suggestions, completion, endings. The function prints with
+`terminal()`, shows progress with `progress()`, and returns its result document for --json.
 """
 
 from __future__ import annotations
 
 import logging
-import signal
+import os
 import sys
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import version as installed_version
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
-from pierburg_ros.errors import InputError, one_line
+from pierburg_ros.cli.endings import INTERRUPTED, SIGNALS, TERMINATED, Terminated, refuse, terminable, usage
+from pierburg_ros.errors import InputError
 
 SPREAD = ("--simulation",)
 """Options that take every value up to the next option."""
-INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
-SIGNALS = {INTERRUPTED: "interrupted", TERMINATED: "terminated"}
-"""Exit statuses of a run that a signal has ended, as shells count them, and the line that says so."""
+COMPLETING = ("_TYPER_COMPLETE_ARGS", "COMP_WORDS")
+"""Variables in which a shell says what has been typed when it asks how that could go on."""
+WIDEST = 100
+"""Columns that help texts fill at most. Chosen: longer lines are hard to read."""
 
 
 @dataclass(frozen=True)
 class Command:
-    """What the list of commands says about one, without importing it."""
+    """What the list of commands says about one, without importing it; its `examples` stand at the end of its help."""
 
     summary: str
     settings: dict[str, Any] = field(default_factory=dict)
+    examples: Sequence[str] = ()
+
+    @property
+    def epilog(self) -> str:
+        """The examples as lines that are not wrapped."""
+        return "\b\nExamples:\n" + "\n".join(f"  {example}" for example in self.examples) if self.examples else ""
 
 
 COMMANDS = {
-    "demo": Command("The whole story on a fresh machine: record, replay and diagnose a concealed effect."),
+    "demo": Command(
+        "The whole story on a fresh machine: record, replay and diagnose a concealed effect.",
+        examples=("pierburg demo", "pierburg demo -o results/demo --json"),
+    ),
     "run": Command(
         "Start one of the nodes: plant, controller or recorder.",
         {"allow_extra_args": True, "ignore_unknown_options": True},
+        (
+            "pierburg run plant --ros-args -p rate:=1000.0",
+            "pierburg run controller",
+            "pierburg run recorder -o run.mcap",
+        ),
     ),
-    "simulate": Command("Simulate the open or the closed loop to MCAP, without a ROS graph."),
-    "experiment": Command("Excitation recipes, and the sequence that best separates two explanations."),
-    "identify": Command("Static characteristic, step response and parameters from recordings."),
-    "replay": Command("Simulate a recorded duty and compare with what was measured."),
-    "diagnose": Command("Locate a mismatch, name the missing physics, model it, show the fit improve."),
-    "inspect": Command("What is in a recording: topics, rates, ranges, losses, clocks, what each could be."),
-    "export": Command("The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold."),
-    "actuator": Command("Describe an actuator; say what is implausible about a description."),
-    "recover": Command("Make a cut recording whole for every reader."),
-    "prove": Command("Seeded blind trials of the diagnosis."),
-    "tune": Command("PIFLC gains and sets for a stated goal over a set of plants."),
+    "simulate": Command(
+        "Simulate the open or the closed loop to MCAP, without a ROS graph.",
+        examples=(
+            "pierburg simulate --duty duty.csv -o simulated",
+            "pierburg simulate --setpoints setpoints.csv -o loop",
+            "pierburg simulate --model m.yaml --duty run.mcap -o sim",
+        ),
+    ),
+    "experiment": Command(
+        "Excitation recipes, and the sequence that best separates two explanations.",
+        examples=(
+            "pierburg experiment rich -o bench",
+            "pierburg experiment rich --graph -o bench",
+            "pierburg experiment --discriminate nominal backlash -o b",
+        ),
+    ),
+    "identify": Command(
+        "Static characteristic, step response and parameters from recordings.",
+        examples=(
+            "pierburg identify run.mcap -o identified",
+            "pierburg identify run.mcap --fix torque_constant -o out",
+            "pierburg identify --audit",
+        ),
+    ),
+    "replay": Command(
+        "Simulate a recorded duty and compare with what was measured.",
+        examples=(
+            "pierburg replay run.mcap -o replayed",
+            "pierburg replay run.mcap --model model.yaml -o replayed",
+        ),
+    ),
+    "diagnose": Command(
+        "Locate a mismatch, name the missing physics, model it, show the fit improve.",
+        examples=(
+            "pierburg diagnose run.mcap -o diagnosis",
+            "pierburg diagnose a.mcap b.mcap --actuator my.yaml -o d",
+            "pierburg diagnose run.mcap --simulation sim.mcap -o out",
+            "pierburg diagnose run.mcap -o out --json > found.json",
+        ),
+    ),
+    "fleet": Command(
+        "Many recordings of many actuators: how each ages, and which to look at first.",
+        examples=(
+            "pierburg fleet recordings -o fleet",
+            "pierburg fleet runs --pattern '{unit}/{date}_*.mcap' -o fleet",
+            "pierburg fleet runs -o fleet --limit armature_resistance=5",
+            "pierburg fleet fleet.csv --scheduler tcp://10.0.0.5:8786 -o f",
+        ),
+    ),
+    "inspect": Command(
+        "What is in a recording: topics, rates, ranges, losses, clocks, what each could be.",
+        examples=(
+            "pierburg inspect run.mcap",
+            "pierburg inspect run.mcap --write-signals signals.yaml",
+            "pierburg inspect run.mcap --json",
+        ),
+    ),
+    "export": Command(
+        "The corrected model for MuJoCo, URDF, SDF, Modelica or JSON, and what each cannot hold.",
+        examples=("pierburg export model.yaml --to mujoco -o valve.xml",),
+    ),
+    "actuator": Command(
+        "Describe an actuator; say what is implausible about a description.",
+        examples=(
+            "pierburg actuator new mine.yaml",
+            "pierburg actuator new my.yaml --from-recording run.mcap",
+            "pierburg actuator check pierburg",
+        ),
+    ),
+    "recover": Command(
+        "Make a cut recording whole for every reader.",
+        examples=("pierburg recover run.mcap", "pierburg recover run.mcap -o whole.mcap"),
+    ),
+    "prove": Command(
+        "Seeded blind trials of the diagnosis; known effects put into your own recordings.",
+        examples=(
+            "pierburg prove --trials 1 -o proof",
+            "pierburg prove --only backlash --only drift -o proof",
+            "pierburg prove --real bench/ --actuator my.yaml -o proof",
+            "pierburg prove --real bench/ --model my.yaml --budget 60 -o proof",
+        ),
+    ),
+    "tune": Command(
+        "PIFLC gains and sets for a stated goal over a set of plants.",
+        examples=("pierburg tune -o controller.yaml", "pierburg tune --overshoot 1 --settling 3 -o soft.yaml"),
+    ),
 }
 
 
 def application(called: str | None = None) -> typer.Typer:
     """The command line, with the function of the `called` command and summaries in place of the others."""
-    app = typer.Typer(name="pierburg", add_completion=False, pretty_exceptions_enable=False)
+    settings = {"help_option_names": ["-h", "--help"], "max_content_width": WIDEST}
+    app = typer.Typer(name="pierburg", pretty_exceptions_enable=False, rich_markup_mode=None, context_settings=settings)
     app.callback()(options)
     for name, command in COMMANDS.items():
-        is_called = name == called
-        function = getattr(import_module(f"pierburg_ros.cli.{name}"), name) if is_called else summary_only
-        summary = None if is_called else command.summary
-        app.command(name, help=summary, context_settings=command.settings)(function)
+        function = command_of(name) if name == called else summary_only
+        registered = app.command(
+            name, short_help=command.summary, epilog=command.epilog, context_settings=command.settings
+        )
+        registered(function)
     return app
+
+
+def command_of(name: str) -> Callable[..., None]:
+    """The function of a command, with the options that all commands have."""
+    from pierburg_ros.cli.common import with_common
+
+    return with_common(getattr(import_module(f"pierburg_ros.cli.{name}"), name))
 
 
 def summary_only() -> None:
@@ -79,7 +181,7 @@ def print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-VERSION = typer.Option(callback=print_version, is_eager=True, help="Print the version and stop.")
+VERSION = typer.Option("--version", callback=print_version, is_eager=True, help="Print the version and stop.")
 
 
 def options(version: Annotated[bool, VERSION] = False) -> None:
@@ -90,7 +192,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; what a person gave wrongly ends as one line on stderr and exit status 2."""
     show_log()
     given = spread(sys.argv[1:] if arguments is None else arguments) or ["--help"]
-    called = next((argument for argument in given if argument in COMMANDS), None)
+    typed = " ".join(os.environ.get(name, "") for name in COMPLETING).split()
+    called = next((argument for argument in (*typed, *given) if argument in COMMANDS), None)
     try:
         with terminable():
             status = application(called)(given, prog_name="pierburg", standalone_mode=False)
@@ -105,39 +208,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except Terminated:
         status = TERMINATED
     except Exception as error:
-        # Typer keeps its usage errors private; they are the ones that can format themselves.
-        if not hasattr(error, "format_message"):
-            raise
-        refuse(f"{error.format_message()} See 'pierburg {called or ''} --help'.".replace("  ", " "))
+        refuse(usage(error, f"pierburg {called}" if called else "pierburg"))
     if status in SIGNALS:
         print(f"pierburg: {SIGNALS[status]}.", file=sys.stderr)
     raise SystemExit(status if isinstance(status, int) else 0)
 
 
-class Terminated(BaseException):
-    """SIGTERM has come: everything that is open is closed and cleared on the way out, as after Ctrl-C."""
-
-
-@contextmanager
-def terminable() -> Iterator[None]:
-    """Let SIGTERM end the block as an exception does; its default would leave what is half done."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def end(*_: object) -> None:
-        raise Terminated
-
-    before = signal.signal(signal.SIGTERM, end)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
 def spread(arguments: Sequence[str]) -> list[str]:
-    """The arguments with an option of `SPREAD` repeated before each of its values: --simulation a b is one of a and one
-    of b. Click has no option with several values."""
+    """The arguments with an option of `SPREAD` repeated before each of its values.
+
+    `--simulation a b` is one of a and one of b. Click has no option with several values.
+    """
     found: list[str] = []
     option = ""
     for argument in arguments:
@@ -157,12 +238,6 @@ def show_log() -> None:
         log.setLevel(logging.INFO)
 
 
-def refuse(reason: str) -> NoReturn:
-    """Print `reason` as one line on stderr and end with exit status 2."""
-    print("pierburg:", one_line(reason), file=sys.stderr)
-    raise SystemExit(2)
-
-
 def standalone(name: str) -> Callable[[], None]:
     """The command `name` as an executable of its own, as `ros2 run pierburg_ros NAME` starts it."""
 
@@ -178,6 +253,7 @@ experiment = standalone("experiment")
 identify = standalone("identify")
 replay = standalone("replay")
 diagnose = standalone("diagnose")
+fleet = standalone("fleet")
 inspect = standalone("inspect")
 export = standalone("export")
 actuator = standalone("actuator")

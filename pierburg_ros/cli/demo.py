@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console, Group
-from rich.table import Table
+from rich.console import Console
 
 from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
+from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.control import Controller
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.library.comparing import Comparison, compare
+from pierburg_ros.library.diagnosing import Diagnosis
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
 from pierburg_ros.library.reading import read
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
 
@@ -40,7 +43,7 @@ REAL_RUNS = Path("../shared/data/xl330")
 def demo(
     output: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("results/demo"),
     real: Annotated[Path, typer.Option(help="Folder with measured runs of the XL330 bench.")] = REAL_RUNS,
-) -> None:
+) -> dict[str, object]:
     """Close a loop over ROS, record it, replay it; conceal an effect, record again, and have it diagnosed.
 
     The first run is replayed against the true model, measured runs of a real bench against a simple one. In the
@@ -50,15 +53,19 @@ def demo(
     console = terminal()
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
-        console.print(replayed(folder, recording, Model.nominal("pierburg")))
+        comparison = replayed(folder, recording, Model.nominal("pierburg"))
+        console.print(summary(comparison))
         concealed = recorded_run(folder, "concealed.mcap", {"model": str(CONCEALED)}, True, console)
-        console.print(diagnosed(folder / "diagnosis", concealed))
+        diagnosis = diagnosed(folder / "diagnosis", concealed)
+        console.print(f"{concealed.name} and nothing else, diagnosed:", shown(diagnosis.document))
         runs = sorted(real.glob("*.mcap"))
         if runs:
             console.print(replayed_bench(folder / "xl330", runs))
         else:
             console.print(f"No measured runs in {real}; name a folder with --real to replay them too.")
-    console.print(f"Results in {output}: replay.html (the loop), diagnosis/report.html (the concealed effect).")
+    files = "replay.html (the loop), diagnosis/report.html (the concealed effect)"
+    console.print(f"Results in {output}: {files}.", soft_wrap=True)
+    return {"replay": json.loads(comparison.to_json()), "diagnosis": json.loads(diagnosis.to_json())}
 
 
 def recorded_run(
@@ -77,7 +84,8 @@ def recorded_run(
         "plant": {"hall_voltage_noise": NOISE, **pace, **physics},
         "controller": {"use_sim_time": simulated_time, **({"hall_timeout": 0.0} if simulated_time else {})},
     }
-    with console.status("compiling simulator and controller, once on a machine"):
+    with progress() as show:
+        show(Step("compiling simulator and controller, once on a machine"))
         compile_kernels()
     console.print(
         f"Plant, controller and recorder run over DDS for {SETPOINTS[-1][0]:.0f} s of"
@@ -103,31 +111,30 @@ def compile_kernels() -> None:
     controller.change(controller.settings)
 
 
-def diagnosed(folder: Path, recording: Path) -> Group:
-    """Diagnose a recording as a user would, with nothing but its path, and give what a terminal shows."""
+def diagnosed(folder: Path, recording: Path) -> Diagnosis:
+    """Diagnose a recording as a user would, with nothing but its path, and write the files."""
     diagnosis = diagnosed_with_progress([read(recording)], Model.nominal("pierburg"))
     diagnosis.save(folder)
-    return Group(f"{recording.name} and nothing else, diagnosed:", shown(diagnosis.document))
+    return diagnosis
 
 
-def replayed(folder: Path, recording: Path, model: Model) -> Table:
-    """Write the files of a replay and give its summary."""
+def replayed(folder: Path, recording: Path, model: Model) -> Comparison:
+    """Write the files of a replay and give it."""
     comparison = compare(recording, model)
     comparison.save(folder)
-    return summary(comparison)
+    return comparison
 
 
-def replayed_bench(folder: Path, runs: list[Path]) -> Table:
+def replayed_bench(folder: Path, runs: list[Path]) -> Listing:
     """Replay measured runs of the pendulum bench against its Coulomb-and-viscous model, one row each."""
     model = Model.nominal("xl330")
-    table = Table(title=f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
-    for heading in ("run", "RMSE [rad]", "variance explained", "worst stretch [s]"):
-        table.add_column(heading, justify="left" if heading == "run" else "right")
+    rows = []
     for run in runs:
         comparison = compare(run, model)
         comparison.save(folder / run.stem)
-        table.add_row(*bench_row(run, comparison))
-    return table
+        rows.append(bench_row(run, comparison))
+    headings = ("run", "RMSE [rad]", "variance explained", "worst stretch [s]")
+    return Listing(headings, rows, f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
 
 
 def bench_row(run: Path, comparison: Comparison) -> tuple[str, ...]:

@@ -7,13 +7,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.diagnosis.report.terminal import shown
+from pierburg_ros.diagnosis.search.tried import Tried
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
 from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
@@ -41,19 +43,20 @@ def diagnose(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    rerun: RerunOption = None,
     jobs: JobsOption = None,
     budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
         USUAL_BUDGET
     ),
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
-) -> None:
+) -> str:
     """Say what the simulation lacks: where, which physics, how sure, and what to record next.
 
-    Writes diagnosis.json, model.yaml, report.html and overview.png to the output folder. Ctrl-C gives the best
-    verdict yet.
+    Writes diagnosis.json, model.yaml, report.html, overview.png and diagnosis.mcap (for Foxglove and PlotJuggler,
+    beside the recording) to the output folder. Ctrl-C gives the best verdict yet.
     """
-    nominal = chosen_or_valve(model, actuator)
+    nominal = chosen_model(model, actuator)
     if simulation_signals and not simulation:
         raise InputError("Found --simulation-signals without --simulation. Name the recordings of your simulator.")
 
@@ -65,9 +68,14 @@ def diagnose(
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)
-    terminal().print(
-        shown(diagnosis.document), f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png"
+    if rerun:
+        diagnosis.write_rerun(rerun)
+    console = terminal()
+    console.print(shown(diagnosis.document))
+    console.print(
+        f"Results in {output}: report.html, diagnosis.json, model.yaml, overview.png, diagnosis.mcap", soft_wrap=True
     )
+    return diagnosis.to_json()
 
 
 def diagnosed_with_progress(
@@ -79,12 +87,15 @@ def diagnosed_with_progress(
     force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
-    with _progress() as bar:
-        task = bar.add_task("reading", total=None)
+    with progress() as show:
 
-        def tell(tried: str) -> None:
-            bar.update(task, advance=1, description=tried)
+        def tell(what: str) -> None:
+            if isinstance(what, Tried):
+                show(Step(what.stage, what.done, what.about, what.best, what.left, what))
+            else:
+                show(Step(what))
 
+        show(Step("recordings"))
         return diagnosis_of(
             recordings,
             model=nominal,
@@ -94,13 +105,3 @@ def diagnosed_with_progress(
             budget=budget,
             force=force,
         )
-
-
-def _progress() -> Progress:
-    """A bar on stderr that names what is being tried."""
-    columns = (
-        BarColumn(pulse_style="cyan"),
-        TimeElapsedColumn(),
-        TextColumn("{task.completed} tried; {task.description}"),
-    )
-    return Progress(*columns, console=terminal(stderr=True), transient=True)

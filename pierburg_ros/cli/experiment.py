@@ -12,7 +12,8 @@ from rich.console import Console
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.cli.graph_experiment import play
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop import simulate_loop
@@ -68,7 +69,7 @@ def experiment(
     limit: Annotated[float, typer.Option(min=0.01, max=1.0, help="Largest duty.")] = 1.0,
     graph: Annotated[bool, typer.Option("--graph", help="Play it to a plant on the ROS graph, and record.")] = False,
     simulated_time: Annotated[bool, typer.Option("--simulated-time", help="The graph runs on /clock.")] = False,
-) -> None:
+) -> dict[str, object]:
     """Record an excitation recipe, of the simulated actuator or over the ROS graph.
 
     Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence
@@ -81,7 +82,7 @@ def experiment(
         )
     if graph:
         require_ros()
-    base, console = chosen_or_valve(model, actuator), terminal()
+    base, console = chosen_model(model, actuator), terminal()
     check_count(duration or usual_duration(name or "", base), rate, "An experiment")
     with output_folder(output) as folder:
         if discriminate is not None:
@@ -91,12 +92,14 @@ def experiment(
         file = write_sequence(folder, chosen)
         recording = folder / f"{chosen.name}.mcap"
         if graph:
-            with terminal(stderr=True).status(f"playing {chosen.name}, {chosen.time[-1]:.0f} s"):
+            with progress() as show:
+                show(Step(f"playing {chosen.name}, {chosen.time[-1]:.0f} s"))
                 play(chosen.kind, file, recording, simulated_time)
         elif discriminate is None or model is not None:
             simulate_sequence(recording, base, chosen, rate, noise, seed)
     made = [path.name for path in (file, recording) if (output / path.name).exists()]
     console.print(f"{chosen.name}, {chosen.time[-1]:.0f} s, in {output}: {', '.join(made)}", soft_wrap=True)
+    return {"name": chosen.name, "duration": float(chosen.time[-1]), "files": [str(output / each) for each in made]}
 
 
 def recipe(name: str, base: Model, duration: float | None, rate: float, seed: int, limit: float) -> Sequence:
@@ -126,8 +129,10 @@ def designed(
 ) -> Sequence:
     """The sequence that best separates the explanations `names`, explained in words and a picture."""
     first, second = (explanation(name, base) for name in names)
-    with terminal(stderr=True).status("designing the sequence") as status:
-        design = design_sequence(first, second, duration, rate, noise or 1e-6, limit, status.update)
+    with progress() as show:
+        design = design_sequence(
+            first, second, duration, rate, noise or 1e-6, limit, lambda what: show(Step("designing", what=what))
+        )
     labels = (Path(names[0]).stem, Path(names[1]).stem)
     text = words(design, labels, base.actuator.unit, noise)
     (folder / "explanation.txt").write_text(text + "\n", encoding="utf-8")

@@ -19,7 +19,7 @@ def export(
     model: Annotated[Path, typer.Argument(help="Model file, as `diagnose` and `identify` write it.")],
     to: ToOption,
     output: Annotated[Path, typer.Option(help="File to write.")],
-) -> None:
+) -> dict[str, object]:
     """Write a model for another simulator, and say what its format cannot hold."""
     refuse_folder(output)
     exported = Model.read(model).export(to)
@@ -32,6 +32,7 @@ def export(
         for each in exported.left_out:
             console.print(f"  {each}", soft_wrap=True, markup=False)
     console.print(f"Written to {output}", soft_wrap=True, markup=False)
+    return {"file": str(output), "format": to, "notes": exported.notes, "left_out": exported.left_out}
 
 
 def refuse_folder(output: Path) -> None:

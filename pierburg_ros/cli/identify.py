@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,8 @@ import typer
 from rich.console import Console
 
 from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_or_valve
+from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
@@ -42,27 +44,29 @@ def identify(
     topic: TopicOption = None,
     time: TimeOption = None,
     jobs: JobsOption = None,
-) -> None:
+) -> object:
     """Identify an actuator from recordings: static characteristic, step response, fit of all samples.
 
     Writes identification.json, model.yaml, identification.html and PNGs to the output folder.
     """
     console = terminal()
     if audit:
-        print_audit(console)
+        checks = audit_checks(Model.nominal("pierburg"))
+        console.print("\n".join(audit_lines(checks)), soft_wrap=True)
         if not recordings:
-            return
+            return {"audit": [asdict(check) for check in checks]}
     if not recordings or output is None:
         raise InputError(
             "identify found no recording or no --output, expected both, or --audit. Write pierburg identify"
             " run.mcap --output DIR."
         )
-    start = chosen_or_valve(model, actuator)
+    start = chosen_model(model, actuator)
     measured = [
         read(path, time=time, topics=topics_of(topic), signals=signals, actuator=start.actuator) for path in recordings
     ]
     with output_folder(output) as folder:
-        with terminal(stderr=True).status("fitting whole recordings"):
+        with progress() as show:
+            show(Step("fitting whole recordings"))
             identified = identifying.identify(measured, model=start, free=free or (), fixed=fix or (), jobs=jobs)
         identified.write_into(folder)
     losses_first(console, measured)
@@ -71,12 +75,7 @@ def identify(
         if late := taken_up(recording):
             console.print(f"{recording.name}{late}", soft_wrap=True)
     print_results(console, identified.found, output)
-
-
-def print_audit(console: Console) -> None:
-    """Print what Table I implies about itself."""
-    lines = audit_lines(audit_checks(Model.nominal("pierburg")))
-    console.print("\n".join(lines), soft_wrap=True)
+    return identified.to_json()
 
 
 def print_results(console: Console, found: Identification, output: Path) -> None:
@@ -97,4 +96,4 @@ def print_results(console: Console, found: Identification, output: Path) -> None
             f"{found.fitted.covariance.blocks} stretches of it allow. Try pierburg diagnose.",
             soft_wrap=True,
         )
-    console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs")
+    console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs", soft_wrap=True)

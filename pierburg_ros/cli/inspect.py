@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
-from rich.table import Table
-from rich.text import Text
+from rich.console import Console
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
+from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.inspection import Inspection, TopicContent
 from pierburg_ros.recording.inspection import inspect as inspected
@@ -27,7 +26,6 @@ SPANS = 5
 
 def inspect(
     recording: Annotated[Path, typer.Argument(help="MCAP, rosbag2 directory or CSV.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     write_signals: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a signal map of what was guessed, to edit.")
     ] = None,
@@ -35,7 +33,7 @@ def inspect(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+) -> dict[str, Any]:
     """Show the topics of a recording: types, rates, ranges, losses, clocks, what each is read as and could be.
 
     --write-signals FILE writes a signal map with these guesses, which every command takes with --signals.
@@ -43,20 +41,22 @@ def inspect(
     found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
     if write_signals is not None:
         write(write_signals, found.signals)
-    if as_json:
-        print(json.dumps(found.as_mapping(), indent=1, allow_nan=False))
-        return
-    console = terminal()
+    shown(terminal(), recording, found, actuator, write_signals)
+    return found.as_mapping()
+
+
+def shown(console: Console, recording: Path, found: Inspection, actuator: str | None, written: Path | None) -> None:
+    """Print what was found, what it is read as, and what to do next."""
     if found.recording is not None and found.recording.warning:
         console.print(found.recording.warning, soft_wrap=True)
-    console.print(table(found), soft_wrap=True)
+    console.print(table(found))
     console.print("\n".join(numbers(found)), soft_wrap=True)
     console.print(read_as(found), soft_wrap=True)
     if found.recording is not None and actuator is not None:
         faults_first(console, [found.recording], Model.nominal(read_actuator(actuator)))
-    if write_signals is not None:
+    if written is not None:
         console.print(
-            f"{write_signals}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True
+            f"{written}: a signal map of these guesses. Check it, then give it with --signals.", soft_wrap=True
         )
     elif found.recording is None:
         advice = f"Write a signal map to edit: pierburg inspect {recording} --write-signals signals.yaml"
@@ -72,14 +72,10 @@ def write(path: Path, text: str) -> None:
         raise InputError(f"{path} exists, expected a new name for the signal map. Choose another.") from None
 
 
-def table(found: Inspection) -> Table:
+def table(found: Inspection) -> Listing:
     """One row a topic."""
-    shown = Table(title=Text(found.name))
-    for heading in ("topic and type", "messages", "range", "missing", "clocks", "read as"):
-        shown.add_column(heading)
-    for topic in found.topics:
-        shown.add_row(*(Text(cell) for cell in row(topic)))
-    return shown
+    headings = ("topic and type", "messages", "range", "missing", "clocks", "read as")
+    return Listing(headings, [row(topic) for topic in found.topics], found.name)
 
 
 def row(topic: TopicContent) -> tuple[str, ...]:

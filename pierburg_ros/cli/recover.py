@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.recording.formats.recover import is_whole
 from pierburg_ros.recording.formats.recover import recover as recovered_copy
 
@@ -17,16 +17,17 @@ def recover(
     output: Annotated[
         Path | None, typer.Option(help="The whole copy; by default beside the original, named .recovered.")
     ] = None,
-) -> None:
+) -> dict[str, object]:
     """Make a cut recording whole for every reader; the original stays as it is.
 
     Every message that is there in full is kept, with its times, types, and quality of service.
     """
-    console = Console(highlight=False, soft_wrap=True, markup=False)
+    console = terminal()
     if is_whole(recording):
-        console.print(f"{recording} is whole; nothing was written.")
-        return
+        console.print(f"{recording} is whole; nothing was written.", soft_wrap=True)
+        return {"file": str(recording), "whole": True}
     stem = recording.stem.removesuffix(".cut")
     found = recovered_copy(recording, output or recording.with_name(f"{stem}.recovered{recording.suffix}"))
     left_out = f", {found.damaged} damaged records left out" if found.damaged else ""
-    console.print(f"{found.path}: {found.messages} messages{left_out}")
+    console.print(f"{found.path}: {found.messages} messages{left_out}", soft_wrap=True)
+    return {"file": str(found.path), "whole": False, "messages": found.messages, "damaged": found.damaged}

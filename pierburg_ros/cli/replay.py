@@ -6,14 +6,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
 from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.viewers import RerunOption
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
+from pierburg_ros.pages.listing import Listing
 
 
 def replay(
@@ -24,7 +25,8 @@ def replay(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
-) -> None:
+    rerun: RerunOption = None,
+) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
     Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
@@ -33,17 +35,16 @@ def replay(
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
+    if rerun:
+        comparison.write_rerun(rerun)
     console = terminal()
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)
-    console.print(summary(comparison), f"Results in {output}: replay.html, .png, .json, .csv, .mcap")
+    console.print(summary(comparison))
+    console.print(f"Results in {output}: replay.html, .png, .json, .csv, .mcap", soft_wrap=True)
+    return comparison.to_json()
 
 
-def summary(result: Result) -> Table:
+def summary(result: Result) -> Listing:
     """The main numbers of a result as a table for the terminal."""
-    table = Table(title=result.title, show_header=False)
-    table.add_column(style="bold")
-    table.add_column()
-    for name, value in result.rows().items():
-        table.add_row(name, value)
-    return table
+    return Listing(("", ""), [*result.rows().items()], result.title)

@@ -30,7 +30,7 @@ def simulate(
     noise: Annotated[float, typer.Option(min=0.0, max=10.0, help="Sensor noise, RMS in the measured unit.")] = 0.0,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 0,
     initial_angle: Annotated[float, typer.Option(help="Shaft angle at the start, in rad.")] = 0.0,
-) -> None:
+) -> dict[str, object]:
     """Simulate an actuator, driven by a duty or by the controller, to MCAP."""
     if (duty is None) == (setpoints is None):
         raise InputError("Expected either --duty (open loop) or --setpoints (closed loop). Give one of them.")
@@ -51,4 +51,6 @@ def simulate(
     )
     took = time.perf_counter() - began
     made.save(output)
-    terminal().print(f"{made.time[-1]:.2f} s simulated in {took:.3f} s, written to {output / simulation.FILE}")
+    file = output / simulation.FILE
+    terminal().print(f"{made.time[-1]:.2f} s simulated in {took:.3f} s, written to {file}", soft_wrap=True)
+    return {"file": str(file), "duration": float(made.time[-1]), "samples": made.time.size}

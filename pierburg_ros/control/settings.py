@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.parameter import Parameter
 
 
@@ -70,7 +70,9 @@ class Settings:
         known = [each.name for each in fields(self)]
         for name in values:
             if name not in known:
-                raise InputError(f"The controller has no setting {name!r}; it has {', '.join(known)}.")
+                raise InputError(
+                    f"The controller has no setting {name!r}; it has {', '.join(known)}.{near(name, known)}"
+                )
         return replace(self, **values)
 
     def record(self) -> Any:

@@ -234,6 +234,8 @@ class ResidualTorque(Part):
     """Nodes [rad/s]."""
     torque: list[list[float]]
     """At each angle (row) and velocity (column) [N.m], positive closes."""
+    period: float | None = None
+    """Angle [rad] after which it begins again, such as a turn; null where it does not."""
     shape: str = ""
     """What it looks like over angle, velocity and time, in words."""
     over_time: TorqueOverTime | None = None
@@ -259,6 +261,8 @@ class DataQuality(Part):
     """What was moved how far, in words."""
     limits: list[str] = []
     """What these recordings cannot tell for the way they were made, in words."""
+    dirt: list[str] = []
+    """What is missing, was taken out of the signals, or acted on them unmeasured, in words."""
 
 
 class Simulated(Part):

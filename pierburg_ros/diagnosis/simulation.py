@@ -16,8 +16,9 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis, Simulated, Simulation
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.search import Beam, Progress
+from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
@@ -103,7 +104,7 @@ def reproduction(
     own = in_parts(data_of(recordings, described))
     noise = float(np.hypot(own.noise, data_of(real, described).noise))
     data = replace(own, noise=noise, step=0.0)
-    found = search(data, described, lambda tried: progress(f"simulator: {tried}"), jobs, BEAM)
+    found = search(data, described, staged(progress, "your simulator"), jobs, BEAM)
     fit = lasting(found)
     actuator = with_nominal(described.actuator, fit)
     rmse, before = (rms(data.residual(model)) * noise for model in (fit.model, described))

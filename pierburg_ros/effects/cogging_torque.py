@@ -7,14 +7,15 @@ from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, 
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
-TURNS = (1.0, 16.0)
-"""Range in which periods per motor revolution are looked for: the pole pairs and slots of small motors."""
+TURNS = (1.0, 1000.0)
+"""Range in which periods per motor revolution are looked for, as far as a recording tells them: a motor has at least
+one, and no motor more than the least common multiple of its poles and slots."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
 
 
 def _turns(missing: Missing) -> Sequence[float]:
-    """The strongest rhythms of the missing torque [periods per motor revolution]."""
+    """The clearest rhythms of the missing torque [periods per motor revolution]."""
     return missing.turns(TURNS, 4)
 
 
@@ -73,7 +74,7 @@ EFFECT = Effect(
             1000.0,
             plausible=(1.0, 12.0),
             # a motor has a whole number of teeth
-            searched=(1.0, 64.0),
+            searched=TURNS,
             rhythm=True,
         ),
         Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), measure="1"),

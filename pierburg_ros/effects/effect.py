@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from pierburg_ros import parameter
+from pierburg_ros.effects.put_in import PutIn
 
 Stage = Literal["input", "drive", "transmission", "load", "friction", "sensor"]
 Drive = Literal["voltage", "current", "torque"]
@@ -228,6 +229,9 @@ class Effect:
     """The parameter that is the width of a free play [rad]: the driven side follows when that is used up."""
     rounds: str | None = None
     """The parameter that is the step of a converter, seen in the samples and not searched for."""
+    put_in: PutIn | None = None
+    """Puts it into the channels of a real recording; None: that changes how the shaft moves, which no channel can be
+    made to show exactly."""
 
     def parameter(self, name: str) -> Parameter:
         """The declaration of the parameter called `name`, without the id; KeyError where there is none."""

@@ -1,7 +1,21 @@
 """The duty takes effect late."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """The command logged earlier than it was: what acted at a time was commanded the delay before.
+
+    Exact for every drive and sensor. Earlier is the causal way: of a command logged later the effect would come first.
+    Supply voltage and bridge act when they act, and keep their times.
+    """
+    return replace(channels, command=Series(channels.command.time - values["delay"], channels.command.values))
+
 
 EFFECT = Effect(
     id="input_delay",
@@ -31,4 +45,5 @@ EFFECT = Effect(
     memory="brief",
     linear=True,
     jumps=True,
+    put_in=put_in,
 )

@@ -1,9 +1,34 @@
 """A bridge that ignores small duty."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.effects.put_in import CannotPutIn, Channels, Series
 from pierburg_ros.kernel import kernel
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """The duty that, less the dead band, is the one recorded: further from 0 by the width, and 0 where it was 0.
+
+    Exact for a voltage drive and every sensor: the motor gets the voltage that it got. A duty cannot exceed 1. Where it
+    would, the supply voltage is told higher and the duty smaller by the same factor, which leaves the voltage at the
+    motor; CannotPutIn where no supply voltage was recorded.
+    """
+    width, duty, supply = values["width"], channels.command.values, channels.supply_voltage
+    factor = min((1.0 - width) / max(float(np.max(np.abs(duty))), 1.0 - width), 1.0)
+    if factor < 1.0 and supply is None:
+        raise CannotPutIn("the duty reaches 1, and no supply voltage was recorded")
+    raised = np.where(duty == 0.0, 0.0, factor * duty + np.copysign(width, duty))
+    return replace(
+        channels,
+        command=Series(channels.command.time, raised),
+        supply_voltage=None if supply is None else Series(supply.time, supply.values / factor),
+    )
+
 
 EFFECT = Effect(
     id="pwm_deadband",
@@ -24,6 +49,7 @@ EFFECT = Effect(
     variants=(Variant(("width",), grid(width=(0.005, 0.015, 0.04))),),
     linear=True,
     drives=("voltage",),
+    put_in=put_in,
 )
 
 

@@ -1,8 +1,29 @@
 """Play between the shaft and the magnet of the sensor."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
 from pierburg_ros.effects.effect import Effect, Parameter, Variant, grid
+from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """What a magnet shows that the measured samples drag, with its play centred on the first one.
+
+    Exact for every drive, with a sensor of the angle: the play acts after all that moves, and how it ends depends on
+    the turning points alone. Those between two samples are missed; noise and steps of the recording below the play are
+    lost in it.
+    """
+    half = 0.5 * values["width"] * abs(channels.per_radian)
+    magnet, shown = channels.measured.values[0], np.array(channels.measured.values)
+    for k, shaft in enumerate(channels.measured.values):
+        magnet = shown[k] = min(max(magnet, shaft - half), shaft + half)
+    return replace(channels, measured=Series(channels.measured.time, shown))
+
 
 EFFECT = Effect(
     id="sensor_hysteresis",
@@ -34,6 +55,7 @@ EFFECT = Effect(
     linear=True,
     sensors=("hall_voltage", "position"),
     play="width",
+    put_in=put_in,
 )
 
 

@@ -1,10 +1,31 @@
 """A slow position measurement."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """The measured samples behind a first-order lag that begins at rest on the first one.
+
+    Exact for every drive and sensor: the lag acts after all that moves, on what was measured. Between two samples the
+    signal is a straight line. Noise that should come after the lag is smoothed with it.
+    """
+    time, measured = channels.measured.time, channels.measured.values
+    lagged = np.array(measured)
+    for k, interval in enumerate(np.diff(time)):
+        kept = math.exp(-interval / values["time_constant"])
+        trail = (measured[k + 1] - measured[k]) / interval * values["time_constant"]
+        lagged[k + 1] = measured[k + 1] - trail + kept * (lagged[k] - measured[k] + trail)
+    return replace(channels, measured=Series(time, lagged))
+
 
 EFFECT = Effect(
     id="sensor_lag",
@@ -33,6 +54,7 @@ EFFECT = Effect(
     state=("lagged",),
     memory="brief",
     linear=True,
+    put_in=put_in,
 )
 
 

@@ -1,12 +1,29 @@
 """A Hall characteristic that bends."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.kernel import kernel
 
 HALVINGS = 52
 """Halvings after which an interval of at most 0.6 spans is as small as rounding."""
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """The measured samples as a bent characteristic shows them.
+
+    Exact for every drive, with a Hall sensor that was straight before: each sample depends on its own angle alone.
+    """
+    fraction = (channels.measured.values - channels.zero) / (channels.per_radian * channels.span)
+    bend = values["amplitude"] * np.sin(values["half_waves"] * np.pi * fraction)
+    shown = channels.measured.values + bend * channels.per_radian * channels.span
+    return replace(channels, measured=Series(channels.measured.time, shown))
+
 
 EFFECT = Effect(
     id="sensor_nonlinearity",
@@ -49,6 +66,7 @@ EFFECT = Effect(
     ),
     linear=True,
     sensors=("hall_voltage",),
+    put_in=put_in,
 )
 
 

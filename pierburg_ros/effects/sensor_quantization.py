@@ -1,10 +1,26 @@
 """The resolution of the converter."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter
+from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
+    """The measured samples rounded to a coarser converter's steps.
+
+    Exact for every drive and sensor where the recording's own steps are much finer: a sample within half of those of
+    the edge between two coarse ones may fall on the wrong side.
+    """
+    step = values["step"]
+    return replace(channels, measured=Series(channels.measured.time, step * np.rint(channels.measured.values / step)))
+
 
 EFFECT = Effect(
     id="sensor_quantization",
@@ -31,6 +47,7 @@ EFFECT = Effect(
     typical={"step": 0.001219512},
     linear=True,
     rounds="step",
+    put_in=put_in,
 )
 
 

@@ -28,6 +28,18 @@ CYCLE = 8
 """Of so many blocks the third validates and the seventh tests; the others train. Chosen: an eighth each, as far apart
 as can be; not varied."""
 
+UNKNOWN = "messages of the duty are missing"
+"""Why spans without a known input are left out."""
+
+
+@dataclass(frozen=True)
+class Omission:
+    """A `span` [s] of the recording of a `number` that is left out, or samples in it, and why."""
+
+    number: int
+    span: Span
+    why: str
+
 
 @dataclass(frozen=True)
 class Data:
@@ -35,9 +47,10 @@ class Data:
 
     `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, and of what
     missing messages of the duty may do. `step` is that of the converter where it is coarse beside the noise, otherwise
-    0; all in the measured unit. `left_out` are spans [s] without a known input, with the number of their recording,
-    `warnings` what to say first of recordings that lack messages. `unlike` is by how much the nominal model differs
-    from the simulator that it stands for [measured unit, root mean square], 0 where it stands for none.
+    0; all in the measured unit. `left_out` are spans without a known input, and whatever else tells nothing of the
+    actuator; `warnings` is what to say first of recordings that lack messages, `remarks` of those that are dirty.
+    `disturbed`: a quantity that was not measured is taken to have wandered. `unlike` is by how much the nominal model
+    differs from the simulator that it stands for [measured unit, root mean square], 0 where it stands for none.
     """
 
     actuator: Actuator
@@ -45,8 +58,10 @@ class Data:
     noise: float
     step: float = 0.0
     sensor_noise: float = 0.0
-    left_out: tuple[tuple[int, Span], ...] = ()
+    left_out: tuple[Omission, ...] = ()
     warnings: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    disturbed: bool = False
     unlike: float = 0.0
 
     @property
@@ -103,21 +118,25 @@ class Data:
         return ~(self.train | self.validation)
 
 
-def data_of(recordings: Sequence[Recording], model: Model) -> Data:
-    """The recordings, all of them training; noise and converter are estimated from them. InputError where unfit."""
+def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omission] = ()) -> Data:
+    """The recordings `without` some spans, all training; noise and converter are estimated from them.
+
+    InputError where unfit.
+    """
     if not recordings:
         raise InputError("There is no recording to fit; expected one or more. Name a file.")
     if len({recording.quantity for recording in recordings}) > 1:
         raise InputError("The recordings hold Hall voltage and position; expected one quantity. Fit them one by one.")
-    cut = [parts_of(recording, model) for recording in recordings]
+    spans = [tuple(each.span for each in without if each.number == number) for number in range(len(recordings))]
+    cut = [parts_of(recording, model, out) for recording, out in zip(recordings, spans, strict=True)]
     runs = tuple(run_of(part, model, number) for number, (parts, _) in enumerate(cut) for part in parts)
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
-    left_out = tuple((number, span) for number, (_, found) in enumerate(cut) for span in found.left_out)
+    unknown = (Omission(number, span, UNKNOWN) for number, (_, found) in enumerate(cut) for span in found.left_out)
     finest, _ = DECLARED[STEP].expected(model.scales)
     step = coarse_step([run.measured for run in runs], noise, finest)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
-    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, left_out, warnings)
+    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, (*unknown, *without), warnings)
 
 
 def in_parts(data: Data) -> Data:

@@ -84,8 +84,11 @@ class Kalman:
 
 @dataclass(frozen=True)
 class Filter:
-    """What turns residuals into innovations for one `Discrepancy`: samples that are `seen`, how much of a prediction
-    they `keep` of the one before, the `gain` and the `spread` of the innovations; all of shape (samples,)."""
+    """What turns residuals into innovations for one `Discrepancy`.
+
+    Samples that are `seen`, how much of a prediction they `keep` of the one before, the `gain` and the `spread` of the
+    innovations; all of shape (samples,).
+    """
 
     seen: Flags
     keep: Signal

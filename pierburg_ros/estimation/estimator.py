@@ -133,7 +133,7 @@ class Estimator:
 
         def cost(point: Signal) -> Signal:
             residual = self.residual_at(explanation, coordinates, point)
-            return _forgiven(residual) if forgiving else residual
+            return forgiven(residual) if forgiving else residual
 
         steps = coordinates.steps if steps is None else steps
         solution = minimise(cost, begin, lower, upper, steps, iterations, tolerance, self.over)
@@ -186,6 +186,6 @@ class Estimator:
         return Fit(explanation, {**model.values, **values}, model, switch, solution, self.data.half_step)
 
 
-def _forgiven(residual: Signal) -> Signal:
+def forgiven(residual: Signal) -> Signal:
     """Residuals [noise] with their size beyond `FORGIVEN` replaced by its logarithm."""
     return np.sign(residual) * FORGIVEN * np.log1p(np.abs(residual) / FORGIVEN)

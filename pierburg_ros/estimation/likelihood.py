@@ -32,7 +32,7 @@ def coarse_step(measured: Sequence[Signal], noise: float, least: float) -> float
     noise of standard deviation s leaves a squared error of 0.8 s d beside a rounded simulation. Beside a smooth one it
     leaves s^2 + d^2 / 12, which is less up to d = 8 s.
     """
-    step = min(_grid(values) for values in measured)
+    step = min(grid(values) for values in measured)
     unrounded = np.sqrt(max(noise**2 - step**2 / 12.0, 0.0))
     return step if step >= least and step > COARSE * unrounded else 0.0
 
@@ -64,7 +64,7 @@ def repetition(residual: Signal) -> float:
     return float(1.0 + 2.0 * correlation[1:last].sum())
 
 
-def _grid(measured: Signal) -> float:
+def grid(measured: Signal) -> float:
     """Smallest step between values if all are whole steps apart, otherwise 0."""
     values = np.unique(measured)
     if values.size < 3:

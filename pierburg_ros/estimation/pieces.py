@@ -13,7 +13,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording
-from pierburg_ros.recording.loss import Span
+from pierburg_ros.recording.loss import Span, merged
 from pierburg_ros.recording.noise import noise_of
 
 SEEN = 1.0
@@ -29,23 +29,26 @@ KNOWN = 1000
 
 @dataclass(frozen=True)
 class Pieces:
-    """The parts of a recording that can be simulated, times unchanged, and what the losses within them may add to the
-    error, as a standard deviation in the measured unit. `left_out` are spans [s] whose input is not known."""
+    """The parts of a recording that can be simulated, times unchanged.
+
+    `uncertainty` is what the losses within them may add to the error, as a standard deviation in the measured unit;
+    `left_out` are spans [s] whose input is not known.
+    """
 
     parts: list[Recording]
     uncertainty: float
     left_out: tuple[Span, ...]
 
 
-def pieces(recording: Recording, model: Model) -> Pieces:
-    """`recording` cut where a missing duty may have moved the shaft by more than the noise.
+def pieces(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> Pieces:
+    """`recording` cut where a missing duty may have moved the shaft by more than the noise, and `without` some spans.
 
     Elsewhere the duty is taken to have changed half way through: held until the next message it would always come
     late. What that leaves adds up over the time in which `model` forgets an error.
     """
     unknown = recording.unknown_input
     if not unknown:
-        return Pieces([recording], 0.0, ())
+        return Pieces(_cut(recording, without) if without else [recording], 0.0, ())
     per_radian = 1.0 / abs(angle_per_unit(model))
     starts, ends = (np.array([span[place] for span in unknown]) for place in (0, 1))
     moved = _top_speed(model) * (ends - starts) * _doubt(recording.command, starts, ends) * per_radian
@@ -54,7 +57,7 @@ def pieces(recording: Recording, model: Model) -> Pieces:
     left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
     remembered = min(_memory(model), recording.duration)
     added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration
-    return Pieces(_cut(filled, left_out), math.sqrt(added), left_out)
+    return Pieces(_cut(filled, merged((*left_out, *without))), math.sqrt(added), left_out)
 
 
 def _top_speed(model: Model) -> float:

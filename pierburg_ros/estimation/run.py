@@ -12,10 +12,12 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest, from_standstill
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.estimation.shooting import Shooting, forgets, stretch_length
+from pierburg_ros.estimation.torque_balance import ahead, goes_round, recorded_lag
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 
 
@@ -36,7 +38,7 @@ class Run:
     explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
     `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
-    again and again.
+    again and again. `input_lag` [s] is that of a filter behind which the input was recorded, taken out of `inputs`.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Run:
     decoder: Model | None = None
     number: int = 0
     shooting: Shooting | None = None
+    input_lag: float = 0.0
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -95,15 +98,15 @@ class Run:
         return replace(self, train=train, validation=self.validation & ~train)
 
 
-def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Pieces]:
-    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut.
+def parts_of(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> tuple[list[Recording], Pieces]:
+    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut: `without` some spans.
 
     One part where nothing is missing; of more, each has at least twice the samples that tell where the shaft stands.
     InputError where none can be simulated.
     """
     fewest = 2 * EVEN
     still = forgets(model.actuator)
-    cut = pieces(from_standstill(recording, model) if still else recording, model)
+    cut = pieces(from_standstill(recording, model) if still else recording, model, without)
     begun = _from_standstills(cut.parts) if still else cut.parts
     parts = [part for part in begun if part.time.size >= fewest or len(cut.parts) == 1]
     if not parts:
@@ -115,8 +118,10 @@ def parts_of(recording: Recording, model: Model) -> tuple[list[Recording], Piece
 
 
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
-    """The first part, and the others from where the shaft first rests: where it is in motion after a gap, a simulation
-    that begins a little off would rest elsewhere."""
+    """The first part, and the others from where the shaft first rests.
+
+    Where it is in motion after a gap, a simulation that begins a little off would rest elsewhere.
+    """
     yield parts[0]
     for part in parts[1:]:
         sample = first_rest(part.measured, noise_of(part.time, part.measured))
@@ -151,9 +156,12 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
         shooting = Shooting.of(recording.time, recording.measured, length)
     start = InitialState.of(recording.time, recording.measured)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
+    inputs, lag = inputs_in_force(recording, start, model), 0.0
+    if shooting is not None and goes_round(model, recording.measured, recording.quantity):
+        lag = recorded_lag(model, inputs, recording.time, recording.measured)
     return Run(
         recording.name,
-        inputs_in_force(recording, start, model),
+        ahead(inputs, lag),
         recording.time,
         recording.measured,
         recording.quantity,
@@ -163,6 +171,7 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
         Model.nominal(actuator) if decodes else None,
         number,
         shooting,
+        lag,
     )
 
 

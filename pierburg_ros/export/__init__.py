@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.export.contents import Contents, Exported, LeftOut
 from pierburg_ros.export.json_document import json_document
 from pierburg_ros.export.modelica import modelica
@@ -28,6 +28,8 @@ __all__ = ["FORMATS", "Exported", "LeftOut", "export"]
 def export(model: Model, to: str) -> Exported:
     """`model` in a format of `FORMATS`; InputError where there is none of that name."""
     if to not in FORMATS:
-        raise InputError(f"There is no format {to}; expected {', '.join(FORMATS)}. Choose one with --to.")
+        raise InputError(
+            f"There is no format {to}; expected {', '.join(FORMATS)}.{near(to, FORMATS)} Choose one with --to."
+        )
     contents = Contents(model)
     return contents.exported(FORMATS[to](contents))

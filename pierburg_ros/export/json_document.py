@@ -90,10 +90,10 @@ def residual(contents: Contents) -> dict[str, Any] | None:
     if not contents.residual():
         return None
     assert contents.model.residual_torque is not None
-    grid = {key: np.asarray(contents.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    grid = {key: np.asarray(values).tolist() for key, values in contents.model.residual_torque.items()}
     motion = contents.model.actuator.motion
-    units = {"angle": "rad", "velocity": "rad/s", "torque": "N.m"}
-    return {**grid, "units": {name: unit_of(unit, motion) for name, unit in units.items()}}
+    units = {"angle": "rad", "velocity": "rad/s", "torque": "N.m", "period": "rad"}
+    return {**grid, "units": {name: unit_of(units[name], motion) for name in grid}}
 
 
 def finite(value: float) -> float | None:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.table import Table
-
 from pierburg_ros.identification.identify import Identification, unit_of
 from pierburg_ros.identification.paper.step_response import primitive_parameters
 from pierburg_ros.identification.paper.table_one import Check
+from pierburg_ros.pages.listing import Listing
+
+COLUMNS = ("value", "unit", "95 % interval")
 
 
-def parameter_table(found: Identification) -> Table:
+def parameter_table(found: Identification) -> Listing:
     """Every parameter: fitted or held, with its interval where it has one."""
-    table = Table(title="Parameters, from the fit of whole recordings")
-    for column in ("parameter", "value", "unit", "95 % interval"):
-        table.add_column(column)
+    rows = []
     for name, entry in found.as_mapping()["parameters"].items():
-        interval = entry["ci95"]
-        shown = "{:.6g} to {:.6g}".format(*interval) if interval else "held" if entry["fixed"] else "none"
-        table.add_row(name, f"{entry['value']:.6g}", entry["unit"], shown)
-    return table
+        shown = "held" if entry["fixed"] else interval(entry["ci95"])
+        rows.append((name, f"{entry['value']:.6g}", entry["unit"], shown))
+    return Listing(("parameter", *COLUMNS), rows, "Parameters, from the fit of whole recordings")
+
+
+def interval(ends: Sequence[float] | None) -> str:
+    """Both ends of an interval, or that the recordings do not tell the number."""
+    return "not identifiable" if ends is None else "{:.6g} to {:.6g}".format(*ends)
 
 
 def reasons(found: Identification) -> list[str]:
@@ -28,41 +31,34 @@ def reasons(found: Identification) -> list[str]:
     return [f"{name}: {finding.reason}" for name, finding in found.findings.items() if not finding.identifiable]
 
 
-def lump_table(found: Identification) -> Table | None:
+def lump_table(found: Identification) -> Listing | None:
     """The lumps of sliding motion, and D_c and D_pre; None for an actuator without a spring."""
     if found.lumps is None:
         return None
-    table = Table(title="What sliding motion shows, whatever is held")
-    for column in ("quantity", "value", "unit", "95 % interval"):
-        table.add_column(column)
-    for name, lump in found.lumps.items():
-        interval = "none" if lump.ci95 is None else f"{lump.ci95[0]:.6g} to {lump.ci95[1]:.6g}"
-        table.add_row(name, f"{lump.value:.6g}", lump.unit, interval)
+    rows = [(name, f"{lump.value:.6g}", lump.unit, interval(lump.ci95)) for name, lump in found.lumps.items()]
     source = "settled angles" if found.static is not None else "the fit"
     for name, duty in (found.as_mapping()["static_characteristic"] or {}).items():
-        interval = "none" if duty["ci95"] is None else "{:.6g} to {:.6g}".format(*duty["ci95"])
-        table.add_row(f"{name}, from {source}", f"{duty['value']:.6g}", "1", interval)
-    return table
+        rows.append((f"{name}, from {source}", f"{duty['value']:.6g}", "1", interval(duty["ci95"])))
+    return Listing(("quantity", *COLUMNS), rows, "What sliding motion shows, whatever is held")
 
 
-def paper_table(found: Identification) -> Table | None:
+def paper_table(found: Identification) -> Listing | None:
     """The paper's procedure beside the fit; None where the recordings hold no steps from rest."""
     if found.steps is None or found.static is None:
         return None
-    table = Table(title="The paper's procedure, equations (9) to (12), with R and the supply given")
-    for column in ("parameter", "the paper's way", "whole-recording fit", "unit"):
-        table.add_column(column)
-    values = found.fitted.model.values
-    for name, value in primitive_parameters(found.steps, found.static, values).items():
-        table.add_row(name, f"{value:.5g}", f"{values[name]:.5g}", unit_of(found.model, name))
-    steps = found.steps
+    values, steps = found.fitted.model.values, found.steps
+    rows = [
+        (name, f"{value:.5g}", f"{values[name]:.5g}", unit_of(found.model, name))
+        for name, value in primitive_parameters(steps, found.static, values).items()
+    ]
     for name, value, deviation, unit in (
         ("K", steps.gain, steps.gain_deviation, "rad/V"),
         ("p1", steps.slow_pole, steps.slow_pole_deviation, "rad/s"),
     ):
-        table.add_row(name, f"{value:.5g} +- {1.96 * deviation:.2g}", "", unit)
-    table.add_row("p2", f"above {steps.fast_pole_bound:.3g} (95 %)", "", "rad/s")
-    return table
+        rows.append((name, f"{value:.5g} +- {1.96 * deviation:.2g}", "", unit))
+    rows.append(("p2", f"above {steps.fast_pole_bound:.3g} (95 %)", "", "rad/s"))
+    title = "The paper's procedure, equations (9) to (12), with R and the supply given"
+    return Listing(("parameter", "the paper's way", "whole-recording fit", "unit"), rows, title)
 
 
 def audit_lines(checks: Sequence[Check]) -> list[str]:

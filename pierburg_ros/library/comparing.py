@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.comparison import compare as comparison
+from pierburg_ros.library import overlays
 from pierburg_ros.library.model import Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import Readable, read, taken_up
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
-from pierburg_ros.library.topics import FLOAT64, topics_of
-from pierburg_ros.recording import Recording, write_recording
+from pierburg_ros.recording import Recording
+from pierburg_ros.viewers.mcap_overlay import write_mcap
+from pierburg_ros.viewers.rerun_overlay import write_rerun
 
 if TYPE_CHECKING:
     import pandas
@@ -120,14 +122,14 @@ class Comparison(Result):
         columns = self.columns()
         table, header = np.column_stack(list(columns.values())), ",".join(columns)
         np.savetxt(folder / "replay.csv", table, fmt="%.9g", delimiter=",", header=header, comments="")
-        simulated = {
-            f"/simulated_{self.recording.quantity}": (FLOAT64, self.recording.time, self.simulated),
-            "/residual": (FLOAT64, self.recording.time, self.residual),
-        }
-        write_recording(folder / "replay.mcap", {**topics_of(self.recording), **simulated})
+        write_mcap(folder / "replay.mcap", overlays.of_comparison(self.found))
         page = replay_page(self.found, self.rows(), *origin(self.model.actuator, [self.recording]))
         (folder / "replay.html").write_text(page, encoding="utf-8")
         self.picture().savefig(folder / "replay.png", dpi=120)
+
+    def write_rerun(self, path: str | Path) -> None:
+        """Write the signals to a file for the Rerun viewer; InputError where rerun-sdk is not installed."""
+        write_rerun(Path(path), [overlays.of_comparison(self.found)])
 
 
 def compare(recording: Readable, model: ModelLike) -> Comparison:

@@ -11,11 +11,14 @@ from pierburg_ros.diagnosis import diagnose as diagnosing
 from pierburg_ros.diagnosis.result import Result as Found
 from pierburg_ros.diagnosis.schema import BaseParameter, Estimate
 from pierburg_ros.diagnosis.schema import Diagnosis as Document
+from pierburg_ros.library import overlays
 from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import Readable, recordings_of
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.recording import Recording
+from pierburg_ros.viewers.mcap_overlay import write_mcap
+from pierburg_ros.viewers.rerun_overlay import write_rerun
 
 if TYPE_CHECKING:
     import pandas
@@ -107,7 +110,10 @@ class Diagnosis(Result):
         return rows
 
     def write_into(self, folder: Path) -> None:
-        """Write diagnosis.json, model.yaml, report.html and overview.png."""
+        """Write diagnosis.json, model.yaml, report.html, overview.png, and a diagnosis.mcap for each recording.
+
+        Of several recordings they are diagnosis_1.mcap and so on, in their order; none where nothing is concluded.
+        """
         from pierburg_ros.diagnosis.report.page import write_page
         from pierburg_ros.library.origin import origin
 
@@ -115,6 +121,14 @@ class Diagnosis(Result):
         self.model.write(folder / "model.yaml")
         write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings))
         self.picture().savefig(folder / "overview.png", dpi=110)
+        laid = overlays.of_diagnosis(self.found, self.recordings)
+        for number, overlay in enumerate(laid, 1):
+            name = f"diagnosis_{number}.mcap" if len(laid) > 1 else "diagnosis.mcap"
+            write_mcap(folder / name, overlay)
+
+    def write_rerun(self, path: str | Path) -> None:
+        """Write all recordings to one file for the Rerun viewer; InputError where rerun-sdk is not installed."""
+        write_rerun(Path(path), overlays.of_diagnosis(self.found, self.recordings))
 
 
 def diagnose(

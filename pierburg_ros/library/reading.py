@@ -22,7 +22,7 @@ def read(
     *,
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
-    signals: str | Path | Mapping[str, Any] | None = None,
+    signals: str | Path | Mapping[str, Any] | SignalMap | None = None,
     actuator: Actuator | None = None,
 ) -> Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.

@@ -35,8 +35,9 @@ class Angle:
 
 
 class Pairing:
-    """Takes samples, duties and supplies in the order each was sent; gives samples whose duty is known, with times [s]
-    since `origin` [ns], that of the first.
+    """Takes samples, duties and supplies in the order each was sent; gives samples whose duty is known.
+
+    Their times [s] count from `origin` [ns], that of the first.
 
     A duty is in force from the sample that was sent no earlier than it, until the next one. Where the duty is published
     behind the sample of its own tick, as `applied_duty` is behind `hall_voltage`, `follows` is True: it belongs to the

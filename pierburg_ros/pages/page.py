@@ -52,7 +52,8 @@ def written(
 ) -> str:
     """The page of a `template` in `package`, filled with `context`; its plots take their curves from `signals`.
 
-    `frame` is what the frame shows below: `model_file`, `model_said`, `commands`, `provenance`. Text is never markup.
+    `frame` is what the frame shows below: `model_file`, `model_said`, `commands`, `provenance`; and `library_at`, where
+    the plotting library lies if many pages share it. Text is never markup.
     """
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(lambda name: _source(package, name) or _source(FRAME, name)),
@@ -67,6 +68,7 @@ def written(
         "model_said": "The content of model.yaml.",
         "commands": (),
         "provenance": (),
+        "library_at": "",
         **frame,
     }
     return environment.get_template(template).render(
@@ -74,7 +76,7 @@ def written(
         **context,
         style=_source(FRAME, "style.css"),
         behaviour=_source(FRAME, "behaviour.js"),
-        library=get_plotlyjs(),
+        library="" if below["library_at"] else get_plotlyjs(),
         signals=inert({key: stored(values, key.endswith("time")) for key, values in signals.items()}),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,7 +17,7 @@ from pierburg_ros.actuators.values import accepted, check, check_together, descr
 from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.effects.effect import DRIVES, SENSORS
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_NODES, pack
+from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_ANGLES, RESIDUAL_NODES, RESIDUAL_VELOCITIES, pack
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,10 @@ class Model:
         return Model(self.actuator, values, self.residual_torque)
 
     def with_residual(self, residual_torque: Mapping[str, Any] | None) -> Model:
-        """The model with a residual torque: `angle` [rad], `velocity` [rad/s], `torque` [N.m] on their grid."""
+        """The model with a residual torque: `angle` [rad], `velocity` [rad/s], `torque` [N.m] on their grid.
+
+        With a `period` [rad] the angle begins again after it; the last node is then the first one's torque again.
+        """
         if residual_torque is not None:
             _check_residual(residual_torque)
         return Model(self.actuator, self.values, residual_torque)
@@ -87,7 +91,7 @@ class Model:
         content: dict[str, Any] = {"actuator": actuator, "parameters": parameters, "effects": effects}
         if self.residual_torque is not None:
             content["residual_torque"] = {
-                key: np.asarray(self.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")
+                key: np.asarray(values).tolist() for key, values in self.residual_torque.items()
             }
         return content
 
@@ -110,15 +114,22 @@ def _plain(value: Any) -> Any:
 
 
 def _check_residual(residual: Mapping[str, Any]) -> None:
-    if set(residual) != {"angle", "velocity", "torque"}:
+    if set(residual) - {"period"} != {"angle", "velocity", "torque"}:
         raise InputError(f"residual_torque has {', '.join(residual)}; expected angle, velocity and torque.")
     angle, velocity = (np.asarray(residual[key], dtype=float) for key in ("angle", "velocity"))
     torque = np.asarray(residual["torque"], dtype=float)
-    for name, axis in (("angle", angle), ("velocity", velocity)):
-        increasing = axis.ndim == 1 and 0 < axis.size <= RESIDUAL_NODES and bool(np.all(np.diff(axis) > 0))
+    for name, axis, most in (("angle", angle, RESIDUAL_ANGLES), ("velocity", velocity, RESIDUAL_VELOCITIES)):
+        increasing = axis.ndim == 1 and 0 < axis.size <= most and bool(np.all(np.diff(axis) > 0))
         if not increasing or not np.all(np.isfinite(axis)):
-            raise InputError(f"residual_torque.{name} is unusable; expected 1 to {RESIDUAL_NODES} increasing numbers.")
+            raise InputError(f"residual_torque.{name} is unusable; expected 1 to {most} increasing numbers.")
+    if angle.size * velocity.size > RESIDUAL_NODES:
+        raise InputError(f"residual_torque has {angle.size * velocity.size} nodes; expected {RESIDUAL_NODES} at most.")
     if torque.shape != (angle.size, velocity.size) or not np.all(np.isfinite(torque)):
         raise InputError(
             f"residual_torque.torque has shape {torque.shape}; expected {(angle.size, velocity.size)}, finite."
+        )
+    period = float(residual.get("period", 0.0))
+    if period != 0.0 and not (math.isfinite(period) and period >= float(angle[-1] - angle[0]) > 0.0):
+        raise InputError(
+            f"residual_torque.period is {period:g} rad; expected at least what the nodes of the angle span."
         )

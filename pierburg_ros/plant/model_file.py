@@ -11,7 +11,7 @@ import numpy as np
 from pierburg_ros.actuators import SHIPPED, Actuator, actuator_of, read_actuator
 from pierburg_ros.actuators.values import check
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.intake import check_magnitude, read_yaml, reading
 from pierburg_ros.plant.model import Model
 
@@ -34,7 +34,7 @@ def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None
 def _model(content: dict[str, Any], actuator: Actuator | None, label: str, line: Any, folder: Path) -> Model:
     for key in content:
         if key not in SECTIONS:
-            raise InputError(f"{label}{line(key)}: unknown {key}; expected {', '.join(SECTIONS)}.")
+            raise InputError(f"{label}{line(key)}: unknown {key}; expected {', '.join(SECTIONS)}.{near(key, SECTIONS)}")
     if actuator is None:
         if "actuator" not in content:
             raise InputError(f"{label} names no actuator; expected for example `actuator: pierburg`.")
@@ -104,7 +104,9 @@ def _section(content: dict[str, Any], key: str, label: str, line: Any) -> dict[s
 def _effect(model: Model, effect: str, numbers: Any, label: str, line: Any) -> dict[str, float]:
     place = f"{label}{line('effects', effect)}"
     if effect not in EFFECT:
-        raise InputError(f"{place}: unknown effect {effect}; expected one of {', '.join(EFFECT)}.")
+        raise InputError(
+            f"{place}: unknown effect {effect}; expected one of {', '.join(EFFECT)}.{near(effect, EFFECT)}"
+        )
     if not isinstance(numbers, dict):
         raise InputError(f"{place}: {effect} is {numbers!r}; expected its parameters with values.")
     declared = EFFECT[effect]
@@ -112,7 +114,9 @@ def _effect(model: Model, effect: str, numbers: Any, label: str, line: Any) -> d
     for name, value in numbers.items():
         if name not in declared.names:
             expected = ", ".join(declared.names)
-            raise InputError(f"{place}: {effect} has no parameter {name}; expected {expected}.")
+            raise InputError(
+                f"{place}: {effect} has no parameter {name}; expected {expected}.{near(name, declared.names)}"
+            )
         _try(model, {f"{effect}.{name}": value}, f"{label}{line('effects', effect, name)}")
         changes[f"{effect}.{name}"] = value
     if any(changes.get(f"{effect}.{name}", 0.0) != 0.0 for name in declared.strength):

@@ -12,8 +12,10 @@ import numpy as np
 from pierburg_ros.actuators import Scales
 from pierburg_ros.effects import EFFECTS, Effect
 
-RESIDUAL_NODES = 24
-"""Most nodes an axis of the residual torque may have."""
+RESIDUAL_ANGLES, RESIDUAL_VELOCITIES = 512, 24
+"""Most nodes that the residual torque may have over the angle and over the velocity."""
+RESIDUAL_NODES = 1024
+"""Most nodes that it may have in all."""
 
 FACTORS = ("armature_resistance", "torque_constant", "gear_ratio", "torque_scale", "sensor_scale")
 """Base parameters that multiply or divide."""
@@ -41,9 +43,10 @@ RESIDUAL = np.dtype(
     [
         ("angles", np.int64),
         ("velocities", np.int64),
-        ("angle", np.float64, (RESIDUAL_NODES,)),
-        ("velocity", np.float64, (RESIDUAL_NODES,)),
-        ("torque", np.float64, (RESIDUAL_NODES, RESIDUAL_NODES)),
+        ("period", np.float64),  # rad, after which the angle begins again; 0: it does not
+        ("angle", np.float64, (RESIDUAL_ANGLES,)),
+        ("velocity", np.float64, (RESIDUAL_VELOCITIES,)),
+        ("torque", np.float64, (RESIDUAL_NODES,)),  # row by row, one for each angle
     ]
 )
 
@@ -122,4 +125,5 @@ def _pack_residual(record: np.ndarray, residual: Mapping[str, Any] | None) -> No
     grid["angles"], grid["velocities"] = angle.size, velocity.size
     grid["angle"][0, : angle.size] = angle
     grid["velocity"][0, : velocity.size] = velocity
-    grid["torque"][0, : angle.size, : velocity.size] = residual["torque"]
+    grid["period"] = residual.get("period", 0.0)
+    grid["torque"][0, : angle.size * velocity.size] = np.ravel(residual["torque"])

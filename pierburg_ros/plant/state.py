@@ -78,7 +78,8 @@ def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> 
 def place(p, s, angle, velocity):
     """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission and sensor relaxed; `s` is all zeros.
 
-    On the lower stop the bristles of the friction contact lean as closing onto the stop has left them.
+    On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
+    shaft slides as far as that bends them.
     """
     if p.stop_compliance.stiffness == 0.0:
         angle = min(max(angle, p.lower_stop), p.upper_stop)
@@ -92,4 +93,6 @@ def place(p, s, angle, velocity):
     s.step = math.inf
     if p.presliding.stiffness != 0.0 and angle <= p.lower_stop:
         s.presliding.bristle = -level(p, -1.0, -math.inf, angle, 0.0)[0] / p.presliding.stiffness
+    elif p.presliding.stiffness != 0.0 and velocity != 0.0:
+        s.presliding.bristle = s.direction * level(p, s.direction, velocity, angle, 0.0)[0] / p.presliding.stiffness
     s.presliding.motor_bristle = s.presliding.bristle

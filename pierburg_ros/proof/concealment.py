@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pierburg_ros.proof.dirt.kinds import DIRT
 from pierburg_ros.proof.formulation.values import CATALOGUE, NOMINAL, OUTSIDE
 from pierburg_ros.proof.strengths import drift, remainder, strength
 from pierburg_ros.proof.trial import Change, Trial
@@ -20,6 +21,10 @@ BESIDE = tuple(effect for effect in CATALOGUE if effect != "sensor_quantization"
 """Effects that stand beside a remainder, in turn; steps of the converter are read from the samples, not searched."""
 OVER_GRAPH = {**dict.fromkeys(CATALOGUE, 1), "consistent": 3, "drift": 3}
 """Trials of each kind in the smaller run over the ROS graph."""
+DIRTY = dict.fromkeys(DIRT, 8)
+"""Trials of each kind of dirt: in half of them nothing is hidden, in the others a plain effect."""
+PLAIN = ("static_friction", "load_dependent_friction", "sensor_lag", "nonlinear_spring")
+"""Effects that are hidden in dirty recordings, in turn."""
 NOISES = (0.001, 0.002, 0.002, 0.004, 0.004)  # V
 PUBLISHED = {
     **dict.fromkeys(CATALOGUE, 20),
@@ -59,6 +64,16 @@ def draw_over_graph(kind: str, number: int, seed: int) -> Trial:
     drawn = draw(kind, 2 * number + 1, seed)
     name = f"graph-{kind}-{number:03d}"
     return replace(drawn, name=name, over_graph=True, converter_step=0.0, rate=500.0, duration=60.0)
+
+
+def draw_dirty(kind: str, number: int, seed: int) -> Trial:
+    """Open-loop trial `number` of a kind of dirt; odd ones hide a plain effect.
+
+    What is hidden, and the duty, are the same for all kinds of dirt.
+    """
+    hidden = PLAIN[number // 2 % len(PLAIN)] if number % 2 else "consistent"
+    drawn = draw(hidden, 2 * (number // 2), seed)
+    return replace(drawn, name=f"{kind}-{number:03d}", kind=kind, dirt=kind, rate=500.0, duration=60.0)
 
 
 def _effects(kind: str, number: int, random: Random) -> dict[str, float]:

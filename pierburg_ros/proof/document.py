@@ -17,6 +17,7 @@ from pierburg_ros.proof.intervals import Share
 from pierburg_ros.proof.plan import Plan
 
 PLAIN, OVER_GRAPH = "results of `pierburg prove`", "results of `pierburg prove --over-graph`"
+DIRTY = "results of `pierburg prove --dirty`"
 """Names of the generated parts in the document."""
 Result = Mapping[str, Any]
 
@@ -118,6 +119,17 @@ def by_kind(run: Run) -> str:
     return table((*head, "unseen / noise"), rows)
 
 
+def by_dirt(run: Run) -> str:
+    """Per kind of dirt: trials, verdict and names right, dirt said, something named that is not there."""
+    rows = []
+    for name in run.plan.counts:
+        of_kind = kind(run.results, name)
+        counts = (sum(bool(r[what]) for r in of_kind) for what in ("right", "said", "harmed"))
+        silent = sum(not (r["right"] or r["said"] or r["harmed"]) for r in of_kind)
+        rows.append((name, len(of_kind), *counts, silent))
+    return table(("dirt", "trials", "right", "said", "harmed", "neither right nor said"), rows)
+
+
 def confusion(run: Run) -> str:
     """Per kind: what was answered how often, the most frequent first."""
     counted = tally.confusion(run.results)
@@ -174,6 +186,8 @@ def timing(run: Run) -> str:
 def markdown(run: Run) -> str:
     """The generated part of `docs/proof.md`."""
     cut = "" if len(run.results) == run.plan.size else " The run was cut short: every figure is for the trials done."
+    if run.plan.dirty:
+        return f"Seed {run.plan.seed}, n = {len(run.results)}.{cut} {timing(run)}\n\n{by_dirt(run)}\n"
     sections = [
         f"Seed {run.plan.seed}, n = {len(run.results)} of {run.plan.size} planned trials.{cut} {timing(run)}",
         table(("figure", "count (95 % Wilson interval)"), list(headline(run).items())),
@@ -205,7 +219,7 @@ def write(run: Run, output: Path, document: Path | None = None) -> None:
     text = markdown(run)
     (output / "proof.md").write_text(f"# Blind trials\n\n{text}")
     if document is not None:
-        name = OVER_GRAPH if run.plan.over_graph else PLAIN
+        name = OVER_GRAPH if run.plan.over_graph else DIRTY if run.plan.dirty else PLAIN
         document.write_text(inserted(document.read_text() if document.exists() else "", name, text))
 
 

@@ -1,23 +1,20 @@
-"""Conducts a run of blind trials over all cores: resumable, and countable at any moment."""
+"""Conducts a run of blind trials over all cores, or over a cluster: resumable, and countable at any moment."""
 
 from __future__ import annotations
 
 import json
-import os
-import signal
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from collections.abc import Callable, Sequence
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.processes import end_with_parent
+from pierburg_ros.executors import Lost, ended
 from pierburg_ros.proof.graph import NotRecorded
 from pierburg_ros.proof.plan import Plan
 from pierburg_ros.proof.trial import Trial
-from pierburg_ros.proof.trial_run import DIAGNOSE, conduct, prepare, result, source_version
+from pierburg_ros.proof.trial_run import DIAGNOSE, conduct, prepare, result
+from pierburg_ros.version import source_version
 
 RUN = "run.json"
 Report = Callable[[int, int, dict[str, Any] | NotRecorded | None], None]
@@ -57,51 +54,25 @@ def prove(
     plan: Plan,
     *,
     workers: int | None = None,
+    scheduler: str | None = None,
     command: Sequence[str] | None = DIAGNOSE,
     report: Report = lambda done, total, last: None,
 ) -> list[dict[str, Any]]:
     """Conduct the trials that are missing and give the results; after SIGINT or SIGTERM, those done by then.
 
     Without a `command` to diagnose, the recordings are only made. Results belong to one version of the
-    sources: that at the start. A trial that could not be recorded is reported, and missing from the results.
+    sources: that at the start. A trial that could not be recorded is reported, and missing from the results. The
+    workers of a cluster (`scheduler`) must see the folder `output` under the same path.
     """
     begin(output, plan)
     version = source_version()
     work = partial(conduct_named, plan=plan, output=output, version=version, command=command)
-    cores = workers or os.cpu_count() or 1
-    with ProcessPoolExecutor(cores, initializer=finish_when_interrupted) as pool:
-        try:
-            for done, last in enumerate(ended(pool, work, plan.names, cores), start=1):
-                report(done, plan.size, last)
-        except KeyboardInterrupt:
-            pass
+    try:
+        for done, (_, last) in enumerate(ended(work, plan.names, workers, scheduler), start=1):
+            report(done, plan.size, NotRecorded(last.reason) if isinstance(last, Lost) else last)
+    except KeyboardInterrupt:
+        pass
     return results(output, plan, version)
-
-
-def ended(pool: Executor, work: Callable[..., Any], names: Iterable[Any], workers: int) -> Iterator[Any]:
-    """What the work on each name gives, in the order in which it ends; never more under way than workers.
-
-    A pool that is given all of it at once begins some of it even after an interrupt.
-    """
-    left = iter(names)
-    under_way: set[Future[Any]] = set()
-    while True:
-        under_way |= {pool.submit(work, name) for name in islice(left, workers - len(under_way))}
-        if not under_way:
-            return
-        finished, under_way = wait(under_way, return_when=FIRST_COMPLETED)
-        yield from (future.result() for future in finished)
-
-
-def finish_when_interrupted() -> None:
-    """Leave an interrupt from the keyboard to the main process: a worker ends the trial under way first.
-
-    A worker that is told to terminate gives its trial up, and ends the nodes that it has started; so does one whose
-    main process has been killed.
-    """
-    end_with_parent(os.getppid(), signal.SIGTERM)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
 def results(output: Path, plan: Plan, version: str) -> list[dict[str, Any]]:

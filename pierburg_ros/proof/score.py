@@ -76,6 +76,8 @@ class Score:
     errors_volts: Mapping[str, float | None] = field(default_factory=dict)
     seconds: float = 0.0
     failure: str | None = None
+    said: bool = False  # the diagnosis says that the recording is dirty
+    harmed: bool = False  # an effect, a drift or a change is named that is not there
 
     @property
     def values_right(self) -> bool:
@@ -175,6 +177,20 @@ def change_dated(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> bool
     return any(abs(change["time"] - when) <= DATE_TOLERANCE for change in diagnosis.get("changes", []))
 
 
+def said(diagnosis: Mapping[str, Any]) -> bool:
+    """Whether the diagnosis says that something is wrong with the recording."""
+    quality = diagnosis.get("data_quality") or {}
+    return any((diagnosis.get("excluded"), diagnosis.get("input_faults"), quality.get("dirt")))
+
+
+def harmed(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> bool:
+    """Whether an effect, a drift or a change is named that is not there."""
+    effects = {effect["id"] for effect in diagnosis["effects"]}
+    drifts = {name for name, given in diagnosis.get("parameters", {}).items() if given.get("drifted")}
+    moved = {*truth["drifted"], *(change["parameter"] for change in truth["changes"])}
+    return bool(effects - {effect["id"] for effect in truth["effects"]} or drifts - moved)
+
+
 def failed(truth: Mapping[str, Any], why: str) -> Score:
     """Score of a diagnosis that gave no answer."""
     nothing = {"verdict": "none", "effects": []}
@@ -210,4 +226,6 @@ def score(
         windows=windows,
         unseen_ratio=None if unseen_rmse is None else unseen_rmse / noise,
         errors_volts={**errors, "unseen": unseen_rmse},
+        said=said(diagnosis),
+        harmed=harmed(truth, diagnosis),
     )

@@ -82,8 +82,10 @@ def strength(effect: str, random: Random) -> dict[str, float]:
 
 
 def remainder(random: Random) -> dict[str, float]:
-    """What always remains on a real bench, small: a viscoelastic branch of 5 % of the spring, and friction that grows
-    by 4 % while the shaft rests."""
+    """What always remains on a real bench, small.
+
+    A viscoelastic branch of 5 % of the spring, and friction that grows by 4 % while the shaft rests.
+    """
     return {
         "relaxation.stiffness": 0.05 * NOMINAL["spring_stiffness"],
         "relaxation.time_constant": spread(1.0, 6.0)(random),

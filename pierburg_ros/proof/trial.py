@@ -76,6 +76,7 @@ class Trial:
     duration: float = 60.0  # s
     holdout_duration: float = 40.0  # s
     over_graph: bool = False  # recorded by the three nodes instead of in this process
+    dirt: str = ""  # what disturbs the valve or spoils the log of the recording that is diagnosed
 
     @property
     def values(self) -> dict[str, float]:
@@ -125,6 +126,7 @@ def truth(trial: Trial) -> dict[str, Any]:
         "converter_step_volts": trial.converter_step,
         "rate": trial.rate,
         "over_graph": trial.over_graph,
+        "dirt": trial.dirt,
     }
 
 

@@ -8,7 +8,6 @@ result.json                 the score, and the versions of the sources it belong
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
@@ -38,11 +37,10 @@ from pierburg_ros.recording import read_recording
 
 DIAGNOSE = (sys.executable, "-c", "from pierburg_ros.cli.app import main; main()", "diagnose")
 """The command as a process of its own; the recording and `--output DIR` follow."""
+GIVEN = {"recording.mcap": "train.mcap"}
+"""What a diagnosis gets, under a name that says nothing, and the file of the trial that it is."""
 LONGEST = 900.0  # s, after which a diagnosis counts as failed
 RESULT = "result.json"
-PACKAGE = Path(__file__).parents[1]
-DIAGNOSING = ("actuators", "diagnosis", "effects", "estimation", "plant", "recording")
-"""Folders whose sources a diagnosis depends on."""
 
 
 def prepare(trial: Trial, folder: Path) -> None:
@@ -60,12 +58,19 @@ def prepare(trial: Trial, folder: Path) -> None:
     seal(folder, finite({**truth(trial), "visibility": visibility(trial, run).label()}))
 
 
-def diagnose(folder: Path, command: Sequence[str] = DIAGNOSE) -> float:
-    """Diagnose the recording in a separate process that sees nothing else; gives the time it took [s]."""
+def diagnose(
+    folder: Path, command: Sequence[str] = DIAGNOSE, given: Mapping[str, str] = GIVEN, longest: float = LONGEST
+) -> float:
+    """Diagnose in a separate process what is `given`, which sees nothing else; gives the time it took [s].
+
+    `given` is the file in `folder` of each file that the process finds: recordings to diagnose, and what the `command`
+    names. After the `longest` time [s] it counts as failed.
+    """
     with tempfile.TemporaryDirectory() as place:
-        recording = Path(place) / "recording.mcap"
-        shutil.copy(folder / "train.mcap", recording)
-        asked = [*command, str(recording), "--output", str(Path(place) / "diagnosis")]
+        for name, file in given.items():
+            shutil.copy(folder / file, Path(place) / name)
+        recordings = [str(Path(place) / name) for name in given if name.endswith(".mcap")]
+        asked = [*command, *recordings, "--output", str(Path(place) / "diagnosis")]
         environment = {**os.environ, "COLUMNS": "120"}
         started = time.perf_counter()
         try:
@@ -74,13 +79,13 @@ def diagnose(folder: Path, command: Sequence[str] = DIAGNOSE) -> float:
                 cwd=place,
                 capture_output=True,
                 text=True,
-                timeout=LONGEST,
+                timeout=longest,
                 env=environment,
                 start_new_session=True,
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            raise InputError(f"the diagnosis did not end within {LONGEST:.0f} s") from None
+            raise InputError(f"the diagnosis did not end within {longest:.0f} s") from None
         taken = time.perf_counter() - started
         if ended.returncode != 0:
             last = (ended.stderr.strip().splitlines() or ["no message"])[-1]
@@ -142,15 +147,6 @@ def result(folder: Path, version: str) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     return label if label["sources"] == version else None
-
-
-def source_version(package: Path = PACKAGE) -> str:
-    """Digest of the sources that a diagnosis depends on."""
-    digest = hashlib.sha256()
-    for part in DIAGNOSING:
-        for file in sorted((package / part).rglob("*.py")):
-            digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def finite(value: Any) -> Any:

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from rosbags.serde import SerdeError
 from rosbags.typesys.store import Typestore
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.definitions import types_of
 from pierburg_ros.recording.formats.messages import LONGEST, Messages
 from pierburg_ros.recording.message_types import completed
 from pierburg_ros.recording.signal_map.field_path import Absent, FieldPath, Named, names_beside, value_at
-from pierburg_ros.recording.signals import near
 
 Parts: TypeAlias = "tuple[NDArray[np.bool_], Sequence[Any] | NDArray[np.float64]]"
 """Which messages have a number, and those numbers."""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.recording.formats.definitions import HEADER, Description
 from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.signal_map.field_path import FieldPath, Named, Step
-from pierburg_ros.recording.signals import near
 
 TIMES = {"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"}
 DEEPEST = 8

@@ -15,6 +15,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.intake import check_magnitude, reading
 from pierburg_ros.recording.clocks import Clocks, Timed, check_one_clock
 from pierburg_ros.recording.columns import Columns
+from pierburg_ros.recording.file_times import FileTimes
 from pierburg_ros.recording.formats import format_of
 from pierburg_ros.recording.formats.messages import Bag, Wanted
 from pierburg_ros.recording.loss import Loss, are_numbered, numbered_loss, pauses, silences
@@ -123,6 +124,7 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         losses=losses,
         input=driven,
         path=None,
+        file_times=file_times(timed["measured"], first.time),
     )
 
 
@@ -172,6 +174,11 @@ def samples(name: str, timed: Timed, origin: int) -> tuple[Samples, Samples]:
             f" first at {time[bad[0]]:.3f} s), expected finite numbers. Cut or repair the recording there."
         )
     return time, values
+
+
+def file_times(timed: Timed, time: Samples) -> FileTimes:
+    """When the messages of `timed` lie in their file, by their `time` [s] in the recording."""
+    return FileTimes.of(time, timed.messages.log_time[timed.kept], timed.messages.publish_time[timed.kept])
 
 
 def first_of(topics: Topics, signals: Mapping[str, str], preferred: Collection[str], what: str = "") -> Found:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.recording.file_times import FileTimes
 from pierburg_ros.recording.loss import Loss, Span, merged, sentence, within
 
 Samples = NDArray[np.float64]
@@ -53,7 +54,7 @@ class Recording:
     setpoints [rad]. What was recorded before the first sample has a negative time. Of a linear actuator all of them
     are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
     time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing,
-    `path` where it was read from.
+    `path` where it was read from, `file_times` when its samples lie there.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Recording:
     losses: tuple[Loss, ...] = ()
     input: str = "duty"
     path: Path | None = None
+    file_times: FileTimes | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
@@ -143,7 +145,10 @@ class Recording:
         }
         time, measured = self.time[inside] - origin, self.measured[inside]
         losses = within(self.losses, float(origin), float(last))
-        return replace(self, time=time, measured=measured, command=command, losses=losses, **others)
+        file_times = self.file_times and self.file_times.since(float(origin))
+        return replace(
+            self, time=time, measured=measured, command=command, losses=losses, file_times=file_times, **others
+        )
 
 
 def check_signal(what: str, time: Samples, values: Samples) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 from pierburg_ros.recording.formats.cdr import BOOL, FLOAT64, JOINT_STATE
 
@@ -62,13 +61,3 @@ def signal_of(name: str) -> str:
 def last_name(topic: str) -> str:
     """`/bench/hall_voltage` -> `hall_voltage`."""
     return topic.rsplit("/", 1)[-1]
-
-
-def near(name: str, known: Collection[str]) -> str:
-    """` Did you mean duty?` where one of the `known` names is close to `name`; else nothing."""
-    found = get_close_matches(name, list(known)[:MOST_COMPARED], 1)
-    return f" Did you mean {found[0]}?" if found else ""
-
-
-MOST_COMPARED = 1000
-"""Names that are compared with one that is wrong: more would take long and help nobody."""

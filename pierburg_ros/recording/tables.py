@@ -9,14 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError, printable
+from pierburg_ros.errors import InputError, near, printable
 from pierburg_ros.recording.columns import FORM, Columns
+from pierburg_ros.recording.file_times import FileTimes
 from pierburg_ros.recording.formats import format_of
 from pierburg_ros.recording.formats.csv_table import MOST_CELLS
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
 from pierburg_ros.recording.signal_map import SignalMap, TimeSource
-from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order, near
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order
 from pierburg_ros.recording.topics import nothing
 
 
@@ -96,6 +97,7 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
         losses=tuple(loss for loss in losses if loss.spans),
         input=driven,
         path=None,
+        file_times=FileTimes.of_column(measured.time, reader.first + origin),
         **acting,
     )
 
@@ -181,6 +183,11 @@ class TableReader:
             self.base = float(raw[0][0])
         whole: Signal = (raw[0] - self.base) * self.clock.unit
         return whole + raw[1] * 1e-9 if len(raw) > 1 else whole
+
+    @property
+    def first(self) -> float:
+        """The first time that was read [s], on the clock of the tables."""
+        return (self.base or 0.0) * self.clock.unit
 
     def check_clock(self, part: Columns) -> None:
         """Refuse a table without the column of its times."""

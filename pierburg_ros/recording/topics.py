@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.recording.decoding import numbers
 from pierburg_ros.recording.formats.cdr import CLOCK, JOINT_STATE
 from pierburg_ros.recording.formats.messages import Bag, Messages
 from pierburg_ros.recording.signal_map import SignalMap, Source
-from pierburg_ros.recording.signals import OPTIONAL, SIGNALS, last_name, near
+from pierburg_ros.recording.signals import OPTIONAL, SIGNALS, last_name
 
 PLAIN = {
     f"std_msgs/msg/{kind}"

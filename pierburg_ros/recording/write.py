@@ -28,11 +28,18 @@ MEASURED = {
 """Topic and message type of each measured quantity."""
 
 
-def write_recording(path: str | Path, signals: Mapping[str, Signal], *, as_directory: bool = False) -> None:
+def write_recording(
+    path: str | Path,
+    signals: Mapping[str, Signal],
+    *,
+    as_directory: bool = False,
+    numbers: Mapping[str, Integers] | None = None,
+) -> None:
     """Write `signals`, by topic, to the MCAP file `path`, or as a rosbag2 directory of that name.
 
     The earliest time of all becomes 0 if it is negative. Log and publish time are the signal's time; messages
-    of one time stand in the order of `signals`; sequence numbers count each topic's messages.
+    of one time stand in the order of `signals`; sequence numbers count each topic's messages, unless `numbers` has its
+    sender's, which tell what is missing.
     """
     path = Path(path)
     if as_directory and path.exists():
@@ -44,7 +51,7 @@ def write_recording(path: str | Path, signals: Mapping[str, Signal], *, as_direc
         with file.open("wb") as stream, McapWriter(stream) as writer:
             for topic, (type_name, _, _) in signals.items():
                 writer.declare(topic, type_name)
-            for message in in_order(signals):
+            for message in in_order(signals, numbers or {}):
                 writer.write(*message)
         if as_directory:
             (folder / "metadata.yaml").write_text(yaml.safe_dump(bag_metadata({file.name: writer}), sort_keys=False))
@@ -82,7 +89,9 @@ def write_simulated(
     write_recording(path, signals)
 
 
-def in_order(signals: Mapping[str, Signal]) -> Iterator[tuple[str, bytes, int, int, int]]:
+def in_order(
+    signals: Mapping[str, Signal], numbers: Mapping[str, Integers]
+) -> Iterator[tuple[str, bytes, int, int, int]]:
     """Topic, data, log time [ns], publish time [ns] and sequence number of every message, by time."""
     seconds = [np.asarray(time, np.float64) for _, time, _ in signals.values()]
     earliest = min((float(np.min(time)) for time in seconds if time.size), default=0.0)
@@ -97,7 +106,8 @@ def in_order(signals: Mapping[str, Signal]) -> Iterator[tuple[str, bytes, int, i
     for row in np.lexsort((source, np.concatenate(stamps))).tolist():
         topic, number = int(source[row]), int(place[row])
         when = int(stamps[topic][number])
-        yield topics[topic], encoded[topic][number], when, when, number
+        sent = int(numbers[topics[topic]][number]) if topics[topic] in numbers else number
+        yield topics[topic], encoded[topic][number], when, when, sent
 
 
 def encode(type_name: str, stamps: Integers, values: NDArray[np.float64]) -> list[bytes]:

@@ -80,6 +80,15 @@ def test_a_late_answer_is_no_fault_and_an_early_one_is():
     assert fault.signal == "duty" and "30 ms late" in fault.what
 
 
+@pytest.mark.parametrize("rate, said", [(1.004, "fast"), (0.996, "slow")])
+def test_a_clock_that_runs_away_is_named(rate, said):
+    one = recorded(seed=3)
+    (fault,) = audit([replace(one, command=Channel(rate * one.command.time, one.command.values))], VALVE)
+    clock, found, percent, way = fault.what.split()
+    assert (fault.signal, clock, percent, way) == ("duty", "clock", "%", said)
+    assert float(found) == pytest.approx(0.4, rel=0.2)
+
+
 def test_a_shaft_that_stands_still_is_not_held_against_anything():
     one = recorded()
     resting = replace(one, command=Channel(one.time, np.zeros(one.time.size)), measured=one.measured[0] + 0.0 * TIME)

@@ -88,7 +88,7 @@ def test_an_interruption_ends_with_130(command):
     ("arguments", "line"),
     [
         (["repla"], "pierburg: No such command 'repla'. Did you mean 'replay'? See 'pierburg --help'.\n"),
-        (["tune", "--fast"], "pierburg: No such option: --fast See 'pierburg tune --help'.\n"),
+        (["tune", "--fast"], "pierburg: No such option: --fast. See 'pierburg tune --help'.\n"),
     ],
 )
 def test_a_usage_error_is_one_line_and_status_2(command, capsys, arguments, line):

@@ -55,7 +55,7 @@ def test_says_from_where_a_recording_that_begins_in_motion_is_simulated(tmp_path
     noise = np.random.default_rng(1).normal(0.0, 0.003, time.size)
     write_simulated(tmp_path / "moving.mcap", time, np.full(time.size, 0.2), level + noise)
     assert replay(tmp_path / "moving.mcap", "--actuator", "pierburg", "--output", tmp_path / "out") == 0
-    assert "begins in motion" in capsys.readouterr().out
+    assert "begins in motion" in " ".join(capsys.readouterr().out.replace("│", " ").split())
     rows = np.loadtxt(tmp_path / "out" / "replay.csv", delimiter=",", skiprows=1)
     assert 0.4 <= rows[0, 0] <= 0.46
     assert rows.shape[0] == json.loads((tmp_path / "out" / "replay.json").read_text())["samples"]
@@ -63,11 +63,23 @@ def test_says_from_where_a_recording_that_begins_in_motion_is_simulated(tmp_path
 
 def test_its_mcap_can_be_replayed_again(at_rest, tmp_path):
     replay(at_rest, "--actuator", "pierburg", "--output", tmp_path / "once")
-    again = read_recording(tmp_path / "once" / "replay.mcap")
+    named = {"hall_voltage": "/replay/measured", "duty": "/replay/command"}
+    again = read_recording(tmp_path / "once" / "replay.mcap", topics=named)
     np.testing.assert_array_equal(again.measured, read_recording(at_rest).measured)
-    assert replay(tmp_path / "once" / "replay.mcap", "--actuator", "pierburg", "--output", tmp_path / "twice") == 0
+    options = [word for signal, topic in named.items() for word in ("--topic", f"{signal}={topic}")]
+    written = tmp_path / "once" / "replay.mcap"
+    assert replay(written, "--actuator", "pierburg", *options, "--output", tmp_path / "twice") == 0
     once, twice = (json.loads((tmp_path / name / "replay.json").read_text())["rmse"] for name in ("once", "twice"))
     assert once == twice
+
+
+def test_rerun_that_is_not_installed_is_said_before_any_work(at_rest, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("pierburg_ros.viewers.rerun_overlay.find_spec", lambda _: None)
+    output, file = tmp_path / "out", tmp_path / "run.rrd"
+    assert replay(at_rest, "--actuator", "pierburg", "--output", output, "--rerun", file) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "pip install 'pierburg_ros[rerun]'" in said
+    assert not output.exists() and not file.exists()
 
 
 def test_the_page_needs_no_network(at_rest, tmp_path):
@@ -100,7 +112,6 @@ def test_signals_are_named_by_option(at_rest, tmp_path):
     ("arguments", "line"),
     [
         (["absent.mcap", "--actuator", "pierburg"], "absent.mcap does not exist, expected a recording."),
-        (["rest.mcap"], "Found neither --model nor --actuator, expected one."),
         (["rest.mcap", "--actuator", "toaster"], "toaster"),
         (["rest.mcap", "--model", "odd.yaml"], "armature_resistence"),
         (["rest.mcap", "--actuator", "xl330"], "rest.mcap holds a Hall voltage"),

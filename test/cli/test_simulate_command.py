@@ -129,6 +129,8 @@ def test_bad_input_is_one_line_and_leaves_nothing(options, reason, duty, setpoin
     assert sorted(path.name for path in tmp_path.iterdir()) == ["duty.csv", "setpoints.csv"]
 
 
-def test_says_that_a_model_is_missing(duty, tmp_path, capsys):
-    assert run("--duty", duty, "--output", tmp_path / "out") == 2
-    assert "neither --model nor --actuator" in capsys.readouterr().err
+def test_simulates_the_valve_where_no_actuator_is_named(duty, tmp_path):
+    for name, actuator in (("unnamed", ()), ("named", ("--actuator", "pierburg"))):
+        assert run("--duty", duty, *actuator, "--output", tmp_path / name) == 0
+    unnamed, named = (read_recording(tmp_path / name / "simulated.mcap") for name in ("unnamed", "named"))
+    np.testing.assert_array_equal(unnamed.measured, named.measured)

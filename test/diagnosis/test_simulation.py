@@ -78,8 +78,10 @@ def test_what_the_simulator_has_and_the_description_lacks_is_not_named(mine):
 
 @pytest.mark.search
 def test_a_crude_simulator_makes_nothing_missing(mine):
-    """Its time is stretched and squeezed by up to 8 ms: our equations cannot do so, and the real valve does not either.
-    What is between the two simulators stays between them."""
+    """Its time is stretched and squeezed by up to 8 ms, which our equations cannot do, nor does the real valve.
+
+    What is between the two simulators stays between them.
+    """
     angle = as_measured(mine, NOMINAL).measured
     crude = np.interp(TIME - 0.004 * (1.0 + np.sin(0.9 * TIME)), TIME, angle)
     odd = Recording("odd.csv", "hall_voltage", TIME, crude, mine.command)

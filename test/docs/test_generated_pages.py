@@ -1,6 +1,7 @@
 """Pages that are written by the code say what the code says today."""
 
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import pierburg_ros as pr
 from pierburg_ros.effects.page import page
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -16,6 +18,20 @@ NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 
 def test_the_page_of_effects_is_written_from_the_declarations():
     assert (DOCS / "effects.md").read_text(encoding="utf-8") == page(), "run python -m pierburg_ros.effects.page"
+
+
+@pytest.mark.parametrize("name", ["commands.md", "diagnosis_json.md", "parameters.md", "topics.md"])
+def test_the_reference_is_written_from_the_code(name):
+    write = runpy.run_path(str(DOCS / "reference" / "write.py"))
+    assert (DOCS / "reference" / name).read_text(encoding="utf-8") == write["page"](name), (
+        "run python docs/reference/write.py"
+    )
+    assert name in write["WRITTEN"]
+
+
+def test_the_python_reference_has_every_public_name():
+    text = (DOCS / "reference" / "python.md").read_text(encoding="utf-8")
+    assert set(re.findall(r":: pierburg_ros\.(\w+)", text)) == set(pr.__all__)
 
 
 @pytest.fixture(scope="module")

@@ -77,4 +77,4 @@ def test_the_refusal_of_the_page(tmp_path, monkeypatch):
     Path("signals.yaml").write_text("duty: {topic: /a, unit: deg}\n")
     with pytest.raises(InputError) as refused:
         read_recording("run.csv", signals="signals.yaml")
-    assert f"```\n{refused.value}\n```" in PAGE
+    assert f"```text\n{refused.value}\n```" in PAGE

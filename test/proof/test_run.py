@@ -11,6 +11,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.proof import document, plan, run, trial_run
 from pierburg_ros.proof.concealment import draw
 from pierburg_ros.proof.graph import NotRecorded
+from pierburg_ros.version import source_version
 
 COMMAND = (sys.executable, str(Path(__file__).parents[1] / "support" / "fake_diagnosis.py"))
 
@@ -74,10 +75,10 @@ def test_the_version_follows_the_sources_of_the_diagnosis_only(tmp_path):
     for part in ("diagnosis", "nodes"):
         (tmp_path / part).mkdir()
         (tmp_path / part / "a.py").write_text("one")
-    versions = [trial_run.source_version(tmp_path)]
+    versions = [source_version(tmp_path)]
     for part in ("nodes", "diagnosis"):
         (tmp_path / part / "a.py").write_text("two")
-        versions.append(trial_run.source_version(tmp_path))
+        versions.append(source_version(tmp_path))
     assert versions[0] == versions[1] != versions[2]
 
 

@@ -85,6 +85,18 @@ def test_a_duty_that_is_sent_on_change_is_known_between_its_changes(tmp_path):
     assert read_recording(tmp_path / "run.mcap").losses == ()
 
 
+def test_rows_that_an_even_clock_lacks_are_missing(tmp_path):
+    kept = np.random.default_rng(3).random(TIME.size) >= 0.1
+    kept[[0, 1, -2, -1]] = True
+    recording = read_recording(table(tmp_path / "run.csv", TIME[kept], steps(TIME)[kept], np.sin(TIME)[kept]))
+    gaps = np.flatnonzero(np.diff(np.flatnonzero(kept)) > 1)
+    assert len(pauses(TIME[kept])) == gaps.size and recording.unknown_input == recording.missing_samples
+    unknown = sum(end - start for start, end in recording.unknown_input)
+    assert unknown == pytest.approx(PERIOD * (gaps.size + np.count_nonzero(~kept)))
+    uneven = TIME + 0.1 * PERIOD * np.random.default_rng(4).standard_normal(TIME.size)
+    assert pauses(np.sort(uneven)[kept]) == ()
+
+
 def test_skipped_ticks_of_a_busy_machine_are_no_gap():
     random = np.random.default_rng(0)
     uneven = np.cumsum(PERIOD * random.geometric(0.5, 5000))

@@ -1,4 +1,4 @@
-"""The launch file evaluated without `launch`, which is on no package index: what it declares and what it starts."""
+"""A launch file evaluated without `launch`, which is on no package index: what it declares and what it starts."""
 
 from __future__ import annotations
 
@@ -26,26 +26,31 @@ class Substitution:
 
 def stubs() -> dict[str, ModuleType]:
     """Stand-ins for the modules that the launch file imports; their actions keep what they are given."""
-    names = ("launch", "launch.actions", "launch.substitutions", "launch_ros", "launch_ros.actions")
-    modules = {name: ModuleType(name) for name in (*names, "launch_ros.substitutions")}
+    names = ("launch", "launch.actions", "launch.event_handlers", "launch.substitutions")
+    of_ros = ("launch_ros", "launch_ros.actions", "launch_ros.substitutions")
+    modules = {name: ModuleType(name) for name in (*names, *of_ros)}
     modules["launch"].LaunchDescription = list
     modules["launch.actions"].DeclareLaunchArgument = lambda name, **said: SimpleNamespace(name=name, said=said)
     modules["launch.actions"].OpaqueFunction = lambda function: SimpleNamespace(function=function)
+    modules["launch.actions"].ExecuteProcess = dict
+    modules["launch.actions"].RegisterEventHandler = lambda handler: handler
+    modules["launch.event_handlers"].OnProcessExit = SimpleNamespace
     modules["launch.substitutions"].LaunchConfiguration = Substitution
     modules["launch_ros.substitutions"].FindPackageShare = Substitution
+    modules["launch_ros.substitutions"].ExecutableInPackage = lambda name, package: f"{package}/{name}"
     modules["launch_ros.actions"].Node = dict
     return modules
 
 
-def launched(**given: str) -> tuple[dict[str, dict[str, Any]], list[dict[str, Any]]]:
-    """The declared arguments by name, and what each node is given for these launch arguments."""
-    specification = importlib.util.spec_from_file_location("closed_loop", LAUNCH)
+def launched(file: Path = LAUNCH, **given: str) -> tuple[dict[str, dict[str, Any]], list[Any]]:
+    """The declared arguments by name, and what each node or process is given for these launch arguments."""
+    specification = importlib.util.spec_from_file_location(file.name.split(".")[0], file)
     module = importlib.util.module_from_spec(specification)
     with mock.patch.dict(sys.modules, stubs()):
         specification.loader.exec_module(module)
         *declared, opaque = module.generate_launch_description()
     arguments = {each.name: each.said for each in declared}
-    context = {name: said["default_value"] for name, said in arguments.items()} | given
+    context = {name: said["default_value"] for name, said in arguments.items() if "default_value" in said} | given
     return arguments, opaque.function({**context, "pierburg_ros": str(ROOT)})
 
 

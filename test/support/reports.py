@@ -1,5 +1,7 @@
 """A diagnosis with every part, and what its page shows beside it, without any search."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
@@ -104,6 +106,20 @@ def view(name: str, keys: list[str]) -> View:
     return View(
         name, time, 2.0 + state, 0.1 * state, state, np.cos(time), errors, ((30.0, 32.0, "messages are missing"),)
     )
+
+
+def thinned(found: Result) -> Result:
+    """A result whose views have every twentieth sample, for what looks at each of them."""
+    signals = ("time", "measured", "command", "angle", "velocity")
+    views = tuple(
+        replace(
+            each,
+            **{name: getattr(each, name)[::20] for name in signals},
+            errors={key: error[::20] for key, error in each.errors.items()},
+        )
+        for each in found.exhibits.views
+    )
+    return replace(found, exhibits=replace(found.exhibits, views=views))
 
 
 LEFT = ResidualTorque(

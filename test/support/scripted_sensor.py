@@ -82,13 +82,16 @@ class Bench:
         return False
 
     def broken(self) -> float | None:
-        """Seconds until duty 0 after the sensor breaks, of which it stays broken 0.3 s more; None: never."""
+        """Seconds until a duty 0 that stays for 0.3 s after the sensor breaks; None: never.
+
+        A stall of the machine is answered with duty 0 too, which ends with the stall.
+        """
         begun, answered = time.monotonic(), None
         while time.monotonic() - begun < PATIENCE and (answered is None or time.monotonic() - answered < 0.3):
             count = len(self.duties)
             self.tick(broken=True)
-            zero = next((at for at, duty in self.duties[count:] if duty == 0.0), None)
-            answered = answered or zero
+            for at, duty in self.duties[count:]:
+                answered = None if duty else answered or at
         return None if answered is None else answered - begun
 
     def spiked(self, spikes: int) -> list[float]:

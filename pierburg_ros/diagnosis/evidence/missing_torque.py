@@ -10,6 +10,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import INSTANT
+from pierburg_ros.diagnosis.evidence.rhythms import rhythms
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
@@ -23,6 +24,8 @@ SPOT = 0.032
 trial conceals; only starts of a search come from it."""
 MOVING = 0.006
 """Share of the no-load speed from which friction has a known sign. Derived: twice what counts as standing still."""
+CERTAIN = 4.0
+"""So many standard deviations of its noise make a velocity certain. Derived: white noise does so with 6e-5."""
 SPAN = 2.6
 """Shortest span of time in which a load is looked for, in the actuator's own; longer in a recording of more than 120 of
 them. Chosen: a quarter of a second for the valve; only starts of a search come from it."""
@@ -45,11 +48,11 @@ class MissingTorque:
     """Last moment of the recording."""
 
     def turns(self, between: tuple[float, float], most: int) -> list[float]:
-        """The strongest rhythms over the angle [periods per motor revolution], strongest first."""
+        """The clearest rhythms over the angle [periods per motor revolution], clearest first."""
         return rhythms(self.angle * self.gear_ratio / (2 * math.pi), self.torque, between, most)
 
     def pulses(self, between: tuple[float, float], most: int) -> list[float]:
-        """The strongest rhythms in time, strongest first."""
+        """The clearest rhythms in time, clearest first."""
         return rhythms(self.time, self.torque, between, most)
 
     def spans(self, most: int) -> list[tuple[float, float, float]]:
@@ -76,7 +79,7 @@ def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
     acceleration = np.gradient(velocity, instant)
     motor = _averaged(run.time, motor_torque(model, run.inputs, run.time), grid)
     torque = missing(model.record()[0], motor, grid, shown, velocity, acceleration)
-    moving = np.abs(velocity) > MOVING * own.angle / own.time
+    moving = np.abs(velocity) > _slowest(data, run, instant)
     return MissingTorque(
         time=grid[moving] / own.time,
         angle=shown[moving] / own.angle,
@@ -85,6 +88,12 @@ def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
         gear_ratio=model.values.get("gear_ratio", 1.0) * own.angle,
         end=float(run.time[-1]) / own.time,
     )
+
+
+def _slowest(data: Data, run: Run, instant: float) -> float:
+    """Velocity [rad/s] from which friction has a known sign: it is certain beside the noise of two instants' means."""
+    samples = max(instant / float(np.median(np.diff(run.time))), 1.0)
+    return CERTAIN * data.noise * abs(data.angle_per_unit) / (math.sqrt(2.0 * samples) * instant)
 
 
 def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
@@ -131,28 +140,6 @@ def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:
     count = np.maximum(np.diff(edges), 1)
     means = (total[edges[1:]] - total[edges[:-1]]) / count
     return np.where(np.diff(edges) > 0, means, np.interp(grid, time, values))
-
-
-def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: int) -> list[float]:
-    """The strongest frequencies [1 / unit of place] of `torque` at uneven `place`, strongest first, at most `most`."""
-    if place.size < 20 or np.ptp(place) == 0.0:
-        return []
-    span = np.ptp(place)
-    frequencies = np.arange(*between, 0.25 / span)
-    centred = torque - np.median(torque)
-    limit = 4.0 * np.median(np.abs(centred))
-    centred = np.clip(centred, -limit, limit)
-    power = np.empty(frequencies.size)
-    for part in np.array_split(np.arange(frequencies.size), max(1, frequencies.size // 200)):
-        waves = np.exp(2j * np.pi * np.outer(frequencies[part], place))
-        power[part] = np.abs(waves @ centred)
-    found: list[float] = []
-    for index in np.argsort(power)[::-1]:
-        if all(abs(frequencies[index] - other) > 1.0 / span for other in found):
-            found.append(float(frequencies[index]))
-        if len(found) == most:
-            break
-    return found
 
 
 def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[float, float, float]]:

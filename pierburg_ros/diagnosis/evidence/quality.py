@@ -16,6 +16,7 @@ from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import Run
+from pierburg_ros.estimation.shooting import forgets
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
@@ -35,7 +36,7 @@ Kind = Literal[
 
 SHORTEST = 21.0
 """Duration without which nothing can be fitted and judged, in the actuator's own time. Chosen: 2 s for the valve, less
-than two of its time constants, 1.15 s each; not varied."""
+than two of its time constants, 1.15 s each; not varied. What forgets nothing has none, and is fitted in stretches."""
 FEWEST = 200
 """Samples without which nothing can be fitted and judged. Chosen: ten for each parameter and value of an effect; not
 varied."""
@@ -91,9 +92,9 @@ class Limit:
         return RECORD[self.kind].format(input=self.input)
 
 
-def refuse_unusable(recordings: Sequence[Recording], scales: Scales) -> None:
+def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None:
     """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
-    shortest = SHORTEST * scales.time
+    shortest = SHORTEST * Scales.of(actuator).time if forgets(actuator) else 0.0
     for recording in recordings:
         if recording.time.size < FEWEST or recording.duration < shortest:
             raise InputError(
@@ -103,8 +104,11 @@ def refuse_unusable(recordings: Sequence[Recording], scales: Scales) -> None:
             )
 
 
-def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQuality:
-    """Sampling, saturation, stops and excitation of all `runs`; `noise` is its standard deviation, measured unit."""
+def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
+    """Sampling, saturation, stops and excitation of all `runs`, and the `remarks` on dirty ones.
+
+    `noise` is its standard deviation, measured unit.
+    """
     motions = [motion_of(run, actuator, noise) for run in runs]
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
@@ -119,6 +123,7 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float) -> DataQ
         resolution=_resolution(runs),
         excited=excited(motions),
         limits=[limit.finding for limit in limits_of(runs, actuator, noise)],
+        dirt=list(remarks),
     )
 
 

@@ -10,7 +10,7 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -109,13 +109,14 @@ def limits(
         if case.variant.effect not in final.explanation.effects:
             strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
     tested: list[Limit | None] = []
+    tell = staged(progress, "what is ruled out", len(strengths))
 
     def test() -> None:
         with workers(jobs, deadline) as pool:
             estimator, base = next(iter(pool.map(lambda final: _base(found, final), [final])))
 
             def limit(cases: Sequence[_Case]) -> Limit | None:
-                progress(f"limit of {cases[0].variant.effect}")
+                tell(f"limit of {cases[0].variant.effect}")
                 return _limit(estimator, base, cases)
 
             for each in pool.map(limit, strengths.values()):

@@ -11,8 +11,10 @@ from pierburg_ros.plant import Model
 
 
 def recalibrations(nominal: Model, explanation: Explanation) -> list[Way]:
-    """`nominal` as it is; with the parameters of `explanation` fitted to whole runs; to stretches of them; the same
-    with large errors counting by their logarithm."""
+    """`nominal` as it is, and with the parameters of `explanation` fitted in three ways.
+
+    To whole runs; to stretches of them; the same with large errors counting by their logarithm.
+    """
 
     def described(_: Data) -> Model:
         return nominal

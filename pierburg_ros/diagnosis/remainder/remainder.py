@@ -11,8 +11,8 @@ from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.search import Progress
 from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
@@ -25,9 +25,11 @@ shape of practice-20 out, which made the validation error worse, and those of th
 
 @dataclass(frozen=True)
 class Remainder:
-    """The model that the rest stands on, with the intervals of its values by dotted name; why each of its effects is
-    believed, by id: by what recordings left out say, or by its weight beside what remains; and the rest as a torque
-    over angle and velocity, None where unseen data do not confirm one."""
+    """The model that the rest stands on, with the intervals of its values by dotted name.
+
+    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
+    remains; and the rest as a torque over angle and velocity, None where unseen data do not confirm one.
+    """
 
     base: Fit
     estimates: dict[str, Estimate]
@@ -60,7 +62,7 @@ def remainder(
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         elif (stood := _named(found, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
-            estimator = Estimator(data, found.nominal, discrepancy=stood.scored.discrepancy)
+            estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
         else:
@@ -83,8 +85,8 @@ def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
     """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
     if deadline is None or not deadline.stopped:
         return False
-    plain = found.estimator
-    return plain.validation_misfit(plain.restated(stood.scored.fit)) > plain.validation_misfit(found.recalibrated)
+    own = Estimator(found.data, stood.nominal)
+    return own.validation_misfit(stood.scored.fit) > found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

@@ -15,6 +15,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
+from pierburg_ros.diagnosis.evidence.turn import described_turn, with_turn
 from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
 from pierburg_ros.estimation.least_squares import BRIEF, minimise
@@ -77,12 +78,15 @@ def fit_shape(
         errors = list(pool.map(lambda way: _left_out(data, way), ways))
         way = ways[int(np.argmin(errors))]
     progress("residual torque over angle and velocity")
-    base = way(data)
+    base = way(data).with_residual(None)
     model = _fitted(data, base)
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
     motion = data.actuator.motion
-    shape = described(grid["angle"], grid["velocity"], grid["torque"], motion)
+    if "period" in grid:
+        shape = described_turn(grid["torque"], unit_of("N.m", motion))
+    else:
+        shape = described(grid["angle"], grid["velocity"], grid["torque"], motion)
     words = f"{shape}; {described_over_time(*over_time, unit_of('N.m', motion))}."
     before, after = (rms(data.residual(m)[data.validation]) * data.noise for m in (base, model))
     return Shape(model, base, before, after, words, over_time)
@@ -112,8 +116,10 @@ def _fitted(data: Data, base: Model) -> Model:
 
     It is bilinear between about 7 x 6 nodes. The signal is simulated in short stretches, each from the measured state:
     a slip at the wrong moment is forgotten after one. Large errors count by their logarithm. A prior keeps the shape
-    small and smooth.
+    small and smooth. A shaft that goes round has one over a turn, read from the balance of torques.
     """
+    if (turning := with_turn(data, base.with_residual(None))) is not None:
+        return turning
     own = data.scales.torque
     stretches = restarted(data, STRETCH * data.scales.time) if forgotten(base.active_effects) else data
     training = stretches.train

@@ -20,7 +20,7 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.diagnosis.search.race import ROUNDS
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
-from pierburg_ros.diagnosis.search.search import Progress
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
@@ -62,8 +62,9 @@ Folds = list[tuple[Data, Data]]
 
 
 def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fit, dict[str, LeftOut]]:
-    """A fit with the effects that each lower the error on recordings left out, added one by one, and what speaks for
-    each of them, by id.
+    """A fit with the effects that each lower the error on recordings left out, and what speaks for each, by id.
+
+    They are added one by one.
 
     The parameters that recordings tell apart are fitted beside them, from their nominal values and from the
     recalibrated ones, as far as what remains speaks against what was known of them.

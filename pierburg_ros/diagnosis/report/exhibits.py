@@ -70,7 +70,7 @@ def _view(data: Data, number: int, models: dict[str, Simulated]) -> View:
             key: _joined([run.measured - run.simulated(*simulated) for run in runs])
             for key, simulated in models.items()
         },
-        left_out=tuple((*span, "messages are missing") for recording, span in data.left_out if recording == number),
+        left_out=tuple((*each.span, each.why) for each in data.left_out if each.number == number),
     )
 
 

@@ -58,6 +58,7 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
     short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
+    text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
     places, ranges = located(data, conclusion)
     return Diagnosis(
         schema=2,
@@ -67,7 +68,7 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits
         input=actuator.input,
         motion=actuator.motion,
         verdict=conclusion.verdict,
-        summary=words.cautioned(short, words.warned(data, conclusion.verdict, words.provisional(text, stopped))),
+        summary=words.cautioned(short, text),
         stopped=stopped,
         effects=named,
         parameters=parameters_found,
@@ -82,7 +83,7 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits
         excluded=excluded(data),
         cannot_act=cannot_act(actuator),
         residual_torque=residual_torque(conclusion.shape),
-        data_quality=quality.data_quality(data.runs, actuator, data.noise),
+        data_quality=quality.data_quality(data.runs, actuator, data.noise, (*data.warnings, *data.remarks)),
         advice=[
             *words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
             *words.untested(limits.untested),
@@ -244,8 +245,8 @@ def excluded(data: Data) -> list[Excluded]:
     """The spans that were left out, of every recording."""
     names = {run.number: run.name for run in data.runs}
     return [
-        Excluded(start=start, end=end, why=f"{names.get(number, 'a recording')}: messages of the duty are missing")
-        for number, (start, end) in data.left_out
+        Excluded(start=each.span[0], end=each.span[1], why=f"{names.get(each.number, 'a recording')}: {each.why}")
+        for each in data.left_out
     ]
 
 
@@ -284,7 +285,7 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
     """What is left as a torque over angle and velocity, and over time."""
     if shape is None or shape.model.residual_torque is None:
         return None
-    grid = {key: np.asarray(shape.model.residual_torque[key]).tolist() for key in ("angle", "velocity", "torque")}
+    grid = {key: np.asarray(values).tolist() for key, values in shape.model.residual_torque.items()}
     time, torque = shape.over_time
     return ResidualTorque(
         **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())

@@ -46,8 +46,13 @@ def write_page(
     path.write_text(page(result, provenance, sources), encoding="utf-8")
 
 
-def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()) -> str:
-    """The report as HTML."""
+def page(
+    result: Result,
+    provenance: Sequence[tuple[str, str]] = (),
+    sources: Sequence[Path] = (),
+    library_at: str = "",
+) -> str:
+    """The report as HTML; `library_at` is where it finds the plotting library, if not within itself."""
     diagnosis, exhibits = result.diagnosis, result.exhibits
     views = exhibits.views or (first_view(result),)
     found = places(diagnosis.locations)
@@ -74,6 +79,7 @@ def page(result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Se
         model_file=result.model.text(),
         commands=commands(diagnosis, sources),
         provenance=provenance,
+        library_at=library_at,
     )
 
 

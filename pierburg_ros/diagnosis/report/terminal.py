@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from rich.console import Group
+from collections.abc import Sequence
+
+from rich.columns import Columns
+from rich.console import Group, RenderableType
+from rich.padding import Padding
 from rich.panel import Panel
-from rich.table import Table
 from rich.text import Text
 
-from pierburg_ros.diagnosis.schema import Diagnosis, RuledOut
-from pierburg_ros.pages.numbers import interval, unit, value
+from pierburg_ros.diagnosis.schema import BaseParameter, Diagnosis, Estimate, RuledOut
+from pierburg_ros.pages.listing import Listing
+from pierburg_ros.pages.numbers import interval, ties, unit, value
 
 
 def shown(diagnosis: Diagnosis) -> Group:
     """What a terminal shows of a diagnosis."""
     verdict = diagnosis.verdict.replace("_", " ")
-    parts: list[Panel | Table | Text] = [Panel(diagnosis.summary, title=verdict, expand=False)]
+    parts: list[RenderableType] = [Panel(Text(diagnosis.summary), title=verdict, expand=False)]
     if diagnosis.effects or any(p.drifted for p in diagnosis.parameters.values()):
         parts.append(_changed(diagnosis))
     parts.append(_errors(diagnosis))
@@ -22,40 +26,54 @@ def shown(diagnosis: Diagnosis) -> Group:
         places = "; ".join(f"{p.start:.1f} to {p.end:.1f} s ({p.regime})" for p in diagnosis.locations[:3])
         parts.append(Text(f"Where: {places}"))
     if diagnosis.ruled_out:
-        parts.append(Text(f"Ruled out (95 %): {'; '.join(ruled_out(limit) for limit in diagnosis.ruled_out)}"))
+        limits = [Text(ruled_out(limit)) for limit in diagnosis.ruled_out]
+        parts += [Text("Ruled out (95 %):"), Padding(Columns(limits, column_first=True, padding=(0, 3)), (0, 0, 0, 2))]
     parts += [Text(f"Next: {step}") for step in diagnosis.advice[:3]]
     return Group(*parts)
 
 
 def ruled_out(limit: RuledOut) -> str:
     """What a recording excludes, in a few words."""
-    side, value = ("more", limit.above) if limit.above is not None else ("less", limit.below)
-    unit = "" if limit.unit == "1" else f" {limit.unit}"
-    return f"{limit.id}, {limit.parameter.replace('_', ' ')} {side} than {value:.2g}{unit}"
+    sign, end = ("<", limit.above) if limit.above is not None else (">", limit.below)
+    return f"{limit.id}.{limit.parameter} {sign} {end:.2g}{unit(limit.unit)}"
 
 
-def _changed(diagnosis: Diagnosis) -> Table:
-    table = Table("what", "value", "95 %", "cannot be told from")
-    for effect in diagnosis.effects:
-        ties = "; ".join(" with ".join(tie) for tie in effect.indistinguishable_from)
-        for name, estimate in effect.parameters.items():
-            table.add_row(f"{effect.id}.{name}", *_number(estimate.value, estimate.unit, estimate.ci95), ties)
-    for name, parameter in diagnosis.parameters.items():
-        if parameter.drifted:
-            ties = "; ".join(" with ".join(tie) for tie in parameter.indistinguishable_from)
-            table.add_row(name, *_number(parameter.value, parameter.unit, parameter.ci95), ties)
-    return table
+def _changed(diagnosis: Diagnosis) -> Listing:
+    rows = [
+        _row(f"{effect.id}.{name}", estimate, effect.indistinguishable_from)
+        for effect in diagnosis.effects
+        for name, estimate in effect.parameters.items()
+    ]
+    rows += [
+        _row(name, parameter, parameter.indistinguishable_from)
+        for name, parameter in diagnosis.parameters.items()
+        if parameter.drifted
+    ]
+    return Listing(("what", "value", "95 %", "cannot be told from"), rows)
 
 
-def _number(middle: float | None, name: str, ends: tuple[float, float] | None) -> tuple[str, str]:
-    shown = value(middle, ends) + unit(name) if middle is not None else ""
-    return shown, interval(ends) if ends else ""
+def _row(name: str, estimate: Estimate | BaseParameter, alternatives: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """Name, value, interval, and what it cannot be told from."""
+    ends = estimate.ci95
+    shown = value(estimate.value, ends) + unit(estimate.unit) if estimate.value is not None else ""
+    known = interval(ends) if ends and estimate.identifiable else "not identifiable"
+    return name, shown, known, ties(alternatives)
 
 
-def _errors(diagnosis: Diagnosis) -> Table:
-    unit = diagnosis.unit
-    table = Table(f"RMSE [{unit}]", "nominal", "recalibrated", "final", "noise")
-    for label, errors in (("fitted data", diagnosis.fit.training), ("unseen data", diagnosis.fit.validation)):
-        row = (errors.nominal_rmse, errors.recalibrated_rmse, errors.final_rmse, diagnosis.fit.noise_floor)
-        table.add_row(label, *("" if value is None else f"{value:.4g}" for value in row))
-    return table
+def _errors(diagnosis: Diagnosis) -> Listing:
+    rows = [
+        (
+            label,
+            *(
+                "" if each is None else f"{each:.4g}"
+                for each in (
+                    errors.nominal_rmse,
+                    errors.recalibrated_rmse,
+                    errors.final_rmse,
+                    diagnosis.fit.noise_floor,
+                )
+            ),
+        )
+        for label, errors in (("fitted data", diagnosis.fit.training), ("unseen data", diagnosis.fit.validation))
+    ]
+    return Listing((f"RMSE [{diagnosis.unit}]", "nominal", "recalibrated", "final", "noise"), rows)

@@ -142,8 +142,10 @@ def summary(
 
 
 def warned(data: Data, verdict: Verdict, text: str) -> str:
-    """The summary after a warning where messages are missing, or, where they may have hidden anything, without a
-    conclusion."""
+    """The summary after a warning where messages are missing.
+
+    Where they may have hidden anything it is without a conclusion.
+    """
     if not data.warnings:
         return text
     warning = " ".join(data.warnings)
@@ -154,6 +156,11 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     if verdict == "unexplained" or (hidden and verdict != "missing_physics"):
         warning += " Nothing can be concluded: record again with fewer processes beside."
     return f"{warning} {text}"
+
+
+def remarked(remarks: Sequence[str], text: str) -> str:
+    """The summary after what is remarked of dirty recordings."""
+    return " ".join([*remarks, text])
 
 
 def provisional(text: str, stopped: bool) -> str:

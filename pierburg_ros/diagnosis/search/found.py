@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -13,9 +13,10 @@ from scipy.linalg import qr
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
-from pierburg_ros.diagnosis.search.search import Beam, Progress, Search
+from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
+from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
@@ -81,7 +82,8 @@ def search(
     deadline = deadline or Deadline()
     beam = beam or Beam(resigns=not math.isinf(deadline.left))
     growing = deadline.part(GROWING)
-    tell, begun = _checked(progress, growing), list[Search]()
+    begun = list[Search]()
+    tell = _checked(progress, growing, begun)
     done = growing.attempt(lambda: _grown(data, nominal, tell, jobs, beam, growing, begun), None)
     with workers(jobs) as pool:
         found = done or (begun[0] if begun else Search(data, nominal, pool))
@@ -118,12 +120,20 @@ def _grown(
     return found
 
 
-def _checked(progress: Progress, deadline: Deadline) -> Progress:
-    """`progress` that ends with the time."""
+def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) -> Progress:
+    """`progress` that ends with the time, and says how far the last search `begun` is."""
+    done = 0
 
-    def tell(tried: str) -> None:
+    def tell(what: str) -> None:
+        nonlocal done
         deadline.check()
-        progress(tried)
+        done += 1
+        searching = begun[-1]
+        searching.waiting = max(searching.waiting - 1, 0)
+        ratios = [fit.ratio for fit in list(searching.fits.values())]
+        best = f"error {min(ratios):.3g} times the noise" if ratios else ""
+        left = None if math.isinf(deadline.left) else deadline.left
+        progress(Tried(what, "missing physics", done, done + searching.waiting, best, left))
 
     return tell
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -14,13 +14,12 @@ from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.diagnosis.search.supported import Beside, supported
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
 from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
-
-Progress = Callable[[str], None]
 
 FIRST_PART = 2 * CYCLE * BLOCK
 """How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
@@ -67,7 +66,7 @@ class Search:
         self.first_part = Estimator(data.cut(FIRST_PART * data.scales.time), nominal)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
-        self.tried = 0
+        self.tried = self.waiting = 0
         self.pool = pool
         self.beside: Beside | None = None
         self.resigned = False
@@ -195,6 +194,7 @@ class Search:
         if not candidates:
             return []
         self.tried += len(candidates)
+        self.waiting = len(candidates)
         known = self.best_of_size(candidates[0].explanation.size)
         leading = dict.fromkeys((self.whole, self.first_part), known.ratio if known else np.inf)
         ahead = winners(candidates, leading, self.pool, self.progress, most)

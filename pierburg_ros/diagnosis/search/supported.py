@@ -6,11 +6,13 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from pierburg_ros.diagnosis.evidence.turn import with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.scored import Scored, scored, settled
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
@@ -59,8 +61,13 @@ class Weight:
 
 @dataclass(frozen=True)
 class Supported:
-    """An explanation with its likelihood, and the weight of each of its quantities."""
+    """An explanation with its likelihood, and the weight of each of its quantities.
 
+    `nominal` is the model that it changes: the nominal one, on a shaft that goes round with the lesser orders of the
+    torque over a turn.
+    """
+
+    nominal: Model
     scored: Scored
     weights: Mapping[Quantity, Weight]
 
@@ -83,7 +90,7 @@ class Beside:
         return self.reached.left < OPEN * self.begun
 
 
-def supported(data: Data, nominal: Model, pool: Executor, progress: Callable[[str], None]) -> Beside:
+def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) -> Beside:
     """The likeliest explanation, and the largest of which each quantity carries most of the evidence against the rest.
 
     Quantities are added to the nominal model one by one, each the one that makes the recordings likeliest with its own
@@ -91,6 +98,7 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Callable[[st
     those that do not carry enough are taken away again, the weakest first. It ends where one more addition helps no
     further one, or too little is left for it.
     """
+    nominal = with_lesser_orders(data, nominal)
     named: Supported | None = None
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     begun = reached.left
@@ -122,7 +130,7 @@ class _Promise:
     starts: list[dict[str, float]]
 
 
-def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Callable[[str], None]) -> Scored | None:
+def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> Scored | None:
     """The likeliest explanation with one quantity more."""
     estimator = Estimator(data, nominal, discrepancy=base.discrepancy)
     fit, drifts = estimator.restated(base.fit), drifting(nominal)
@@ -192,4 +200,4 @@ def _weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Suppor
 
     own = quantities(best.fit.explanation)
     costs = zip(own, pool.map(lacking, own), strict=True)
-    return Supported(best, {quantity: Weight(cost - best.cost, best.left) for quantity, cost in costs})
+    return Supported(nominal, best, {quantity: Weight(cost - best.cost, best.left) for quantity, cost in costs})

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.identification.paper.lumps import lumps
 from pierburg_ros.plant import Model
 
@@ -163,7 +163,8 @@ def purpose(name: str) -> str:
     """The sentence that says what recipe `name` does."""
     recipe = DUTY_RECIPES.get(name) or SETPOINT_RECIPES.get(name)
     if recipe is None:
-        raise InputError(f"There is no recipe {name}; expected one of {', '.join([*DUTY_RECIPES, *SETPOINT_RECIPES])}.")
+        known = [*DUTY_RECIPES, *SETPOINT_RECIPES]
+        raise InputError(f"There is no recipe {name}; expected one of {', '.join(known)}.{near(name, known)}")
     return " ".join((recipe.__doc__ or "").split())
 
 

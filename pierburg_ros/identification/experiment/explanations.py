@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pierburg_ros.effects import DECLARED, EFFECT
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.identification.identify import free_names
 from pierburg_ros.plant import Model, read_model
 
@@ -24,6 +24,7 @@ def explanation(name: str, base: Model) -> Model:
         return read_model(name)
     raise InputError(
         f"{name} is neither an effect nor a model file; expected {NOMINAL}, a path, or one of {', '.join(EFFECT)}."
+        f"{near(name, [NOMINAL, *EFFECT])}"
     )
 
 

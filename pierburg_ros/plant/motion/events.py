@@ -86,8 +86,6 @@ def hold(p, s, remaining):
         step = min(step, external_load.next_switch(p.external_load, s.time) - s.time)
         if p.external_load.frequency > 0.0:
             step = min(step, 0.02 / p.external_load.frequency)
-    if inductive:
-        step = min(step, 2.0 * p.armature_inductance.inductance / p.armature_resistance)
     step = _standing_time(p, s, min(max(step, shortest(p)), remaining))
     if inductive:
         s.current = relaxed_current(p, s, step)
@@ -97,6 +95,7 @@ def hold(p, s, remaining):
 
 @kernel
 def _standing_time(p, s, step):
+    """How much of `step` [s] it stands: the current relaxes one way, so what does not move it at the end never did."""
     if _onset_after(p, s, step) == 0.0:
         return step
     early, late = 0.0, step

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from pierburg_ros.effects import cogging_torque, external_load, nonlinear_spring, stop_compliance
 from pierburg_ros.kernel import kernel
 
@@ -66,13 +68,20 @@ def contact(p, angle, velocity):
 
 @kernel
 def residual(grid, angle, velocity):
-    """Residual torque [N.m], bilinear between its nodes and clamped at its edges, with both slopes."""
+    """Residual torque [N.m], bilinear between its nodes and clamped at its edges, with both slopes.
+
+    With a `period` the angle begins again after it.
+    """
+    if grid.period > 0.0:
+        angle -= grid.period * math.floor((angle - grid.angle[0]) / grid.period)
     row, along = _cell(grid.angle, grid.angles, angle)
     column, across = _cell(grid.velocity, grid.velocities, velocity)
-    below = grid.torque[row, column]
-    rise_angle = grid.torque[min(row + 1, grid.angles - 1), column] - below
-    rise_velocity = grid.torque[row, min(column + 1, grid.velocities - 1)] - below
-    corner = grid.torque[min(row + 1, grid.angles - 1), min(column + 1, grid.velocities - 1)]
+    here, next_row = row * grid.velocities, min(row + 1, grid.angles - 1) * grid.velocities
+    next_column = min(column + 1, grid.velocities - 1)
+    below = grid.torque[here + column]
+    rise_angle = grid.torque[next_row + column] - below
+    rise_velocity = grid.torque[here + next_column] - below
+    corner = grid.torque[next_row + next_column]
     twist = corner - below - rise_angle - rise_velocity
     torque = below + along * rise_angle + across * rise_velocity + along * across * twist
     slope_angle = _slope(grid.angle, grid.angles, row, angle, rise_angle + across * twist)
@@ -87,9 +96,7 @@ def _cell(nodes, count, value):
         return 0, 0.0
     if value >= nodes[count - 1]:
         return count - 2, 1.0
-    index = 0
-    while value >= nodes[index + 1]:
-        index += 1
+    index = np.searchsorted(nodes[:count], value, side="right") - 1
     return index, (value - nodes[index]) / (nodes[index + 1] - nodes[index])
 
 

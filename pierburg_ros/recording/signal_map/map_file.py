@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, TypeAlias
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.intake import Document, parsed, text_of
 from pierburg_ros.recording.signal_map.field_path import FieldPath, field_path
 from pierburg_ros.recording.signal_map.source import SignalMap, Source, TimeSource
 from pierburg_ros.recording.signal_map.units import COUNTS, USUAL, Unit, unit_of
-from pierburg_ros.recording.signals import SIGNALS, TIME, near, signal_of
+from pierburg_ros.recording.signals import SIGNALS, TIME, signal_of
 
 KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
 TIME_KEYS = ("topic", "field", "column", "unit")

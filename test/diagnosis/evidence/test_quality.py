@@ -73,9 +73,9 @@ def test_an_actuator_without_stops_lacks_none():
 
 
 def test_refuses_what_is_too_short_to_judge():
-    refuse_unusable([recording({}, duration=3.0)], NOMINAL.scales)
+    refuse_unusable([recording({}, duration=3.0)], NOMINAL.actuator)
     with pytest.raises(InputError, match=r"too short \(600 samples over 1.20 s\); expected at least 200 samples"):
-        refuse_unusable([recording({}, duration=1.2)], NOMINAL.scales)
+        refuse_unusable([recording({}, duration=1.2)], NOMINAL.actuator)
 
 
 @pytest.mark.parametrize(("begin", "moves"), [(0.0, False), (0.64, False), (2.42, True), (3.04, True)])

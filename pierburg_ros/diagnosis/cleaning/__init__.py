@@ -1,0 +1,1 @@
+"""Samples that tell nothing of the actuator, taken out of recordings before anything is fitted, and said."""

@@ -1,0 +1,95 @@
+"""Recordings without the samples that tell nothing of the actuator, and what was done to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.diagnosis.cleaning.hum import hum
+from pierburg_ros.diagnosis.cleaning.outliers import outliers
+from pierburg_ros.diagnosis.cleaning.saturation import saturated
+from pierburg_ros.estimation.data import Data, Omission
+from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
+
+APART = 5
+"""Samples from one that is left out to the next within which both belong to one span. Work: each span is an entry."""
+
+
+@dataclass(frozen=True)
+class Cleaned:
+    """A recording, what was left out of it, and what to say of it first."""
+
+    recording: Recording
+    omissions: tuple[Omission, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+def cleaned(recording: Recording, number: int = 0) -> Cleaned:
+    """`recording` without outliers, without what lies at the end of the converter, and without mains hum."""
+    found = Cleaned(recording)
+    for clean in (_without_outliers, _without_saturation, _without_hum):
+        found = clean(found, number)
+    return found
+
+
+def said_of(recordings: Sequence[Cleaned], data: Data) -> Data:
+    """`data` of cleaned recordings with what was done to them."""
+    omissions = tuple(omission for each in recordings for omission in each.omissions)
+    remarks = tuple(f"{each.recording.name}: {remark}" for each in recordings for remark in each.remarks)
+    return replace(data, left_out=(*data.left_out, *omissions), remarks=remarks)
+
+
+def _without_outliers(given: Cleaned, number: int) -> Cleaned:
+    time, measured = given.recording.time, given.recording.measured
+    found = outliers(time, measured)
+    if not np.any(found):
+        return given
+    count, size = int(np.count_nonzero(found)), measured.size
+    what = f"{count} single samples ({100.0 * count / size:.2g} %) lie far off those around them"
+    span = (float(time[found][0]), float(time[found][-1]))
+    remark = f"{what} and are left out: look at cable, connector and supply of the sensor."
+    return _added(given, ~found, (Omission(number, span, f"{what}: only these are left out"),), remark)
+
+
+def _without_saturation(given: Cleaned, number: int) -> Cleaned:
+    time, measured = given.recording.time, given.recording.measured
+    found = saturated(time, measured)
+    if not np.any(found):
+        return given
+    unit, ends = given.recording.unit, sorted({float(np.min(measured[found])), float(np.max(measured[found]))})
+    what = f"the reading stands at the end of its range ({ends[-1]:.4g} {unit})"
+    omissions = tuple(Omission(number, span, what) for span in spans(time, found))
+    remark = (
+        f"For {np.mean(found) * (time[-1] - time[0]):.3g} s {what}: samples there are left out. Choose a converter or"
+        " an amplifier with more range."
+    )
+    return _added(given, ~found, omissions, remark)
+
+
+def _without_hum(given: Cleaned, number: int) -> Cleaned:
+    recording = given.recording
+    lines = hum(recording.time, recording.measured)
+    if not lines:
+        return given
+    total = np.sum([line.at(recording.time) for line in lines], axis=0)
+    heard = ", ".join(f"{line.amplitude:.2g} {recording.unit} at {line.frequency:.4g} Hz" for line in lines)
+    remark = f"The sensor hears the mains ({heard}), also while the shaft stands; that is taken out. Shield its cable."
+    humless = replace(recording, measured=recording.measured - total)
+    return Cleaned(humless, given.omissions, (*given.remarks, remark))
+
+
+def _added(given: Cleaned, kept: Flags, omissions: tuple[Omission, ...], remark: str) -> Cleaned:
+    recording = given.recording
+    rest = replace(recording, time=recording.time[kept], measured=recording.measured[kept])
+    return Cleaned(rest, (*given.omissions, *omissions), (*given.remarks, remark))
+
+
+def spans(time: Signal, found: Flags) -> list[Span]:
+    """The spans [s] in which samples are `found`, those near each other as one."""
+    places = np.flatnonzero(found)
+    groups = np.split(places, np.flatnonzero(np.diff(places) > APART) + 1)
+    return [(float(time[group[0]]), float(time[group[-1]])) for group in groups if group.size]

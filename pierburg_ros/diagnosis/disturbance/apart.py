@@ -1,0 +1,109 @@
+"""Where no explanation accounts for all: whether one does once a disturbance of the recording is set apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
+from pierburg_ros.diagnosis.disturbance.wandered import wandered
+from pierburg_ros.diagnosis.disturbance.window import confined
+from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
+from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
+
+BESIDE = 4
+"""Explanations beside which disturbances are tried, the nominal model being one. Work: each costs some hundred
+simulations; the right one of plain effects was among the first two."""
+NOTHING = "nothing that acts elsewhere explains this stretch"
+"""Why a stretch is left out."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """The recording with a disturbance set apart, as a fit sees it."""
+
+    data: Data
+    what: str
+
+
+def apart(found: Found, recording: Recording, progress: Progress, jobs: int | None, deadline: Deadline) -> Found:
+    """What is found once a disturbance is set apart that leaves nothing else; `found` itself where none does.
+
+    Physics comes first: it is asked only after a search that left something. `recording` is the one it was made on.
+    """
+    for fit in _promising(found):
+        for tried in _disturbances(found, fit, recording, deadline, progress):
+            again = search(tried.data, found.nominal, progress, jobs, deadline=deadline)
+            if again.chosen.ratio <= EXPLAINED:
+                return again
+    return found
+
+
+def _promising(found: Found) -> list[Fit]:
+    """The nominal model and the explanations by one quantity that come nearest where errors that are large do not
+    count for more."""
+
+    def cost(fit: Fit) -> float:
+        return float(np.mean(np.square(forgiven(fit.solution.residual))))
+
+    singles = [fit for fit in found.of_size(1) if fit.explanation.changed is None]
+    return [found.fits[Explanation()], *sorted(singles, key=cost)[: BESIDE - 1]]
+
+
+def _disturbances(
+    found: Found, fit: Fit, recording: Recording, deadline: Deadline, progress: Progress
+) -> Iterator[Apart]:
+    """The disturbances beside which an explanation leaves nothing, by its own fit to them."""
+    data, nominal = found.data, found.nominal
+    estimator = Estimator(data, nominal)
+    progress(f"{fit.explanation.label}, but for one stretch")
+    if given := without_stretch(data, estimator, fit, recording):
+        yield given
+    for slow in slow_quantities(recording, data, nominal):
+        deadline.check()
+        progress(f"{fit.explanation.label}, while something wanders")
+        course = wandered(data, fit, slow, estimator)
+        if max(course.trained, course.validated) <= EXPLAINED:
+            known = in_parts(data_of([slow.known(recording, course.course, course.values)], nominal))
+            remark = f"{recording.name}: {slow.remark(course.course, course.values)}"
+            yield Apart(_said(known, data, remark, disturbed=True), remark)
+
+
+def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Slow]:
+    """What may have wandered in a recording without being measured."""
+    actuator, found = nominal.actuator, list[Slow]()
+    if actuator.drive == "voltage" and recording.supply_voltage is None:
+        found.append(Supply(nominal.values["supply_voltage"], data.scales.time))
+    return [*found, Zero(actuator.unit, ZERO * data.scales.reading)]
+
+
+def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Apart | None:
+    """The recording without the one stretch that holds the errors of an explanation, if it leaves nothing else."""
+    robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
+    span = confined(data, data.residual(robust.model))
+    if span is None:
+        return None
+    omission = Omission(0, span, NOTHING)
+    rest = in_parts(data_of([recording], estimator.nominal, (omission,)))
+    left = Estimator(rest, estimator.nominal).fit(fit.explanation, robust.values, BRIEF)
+    if left.ratio > EXPLAINED:
+        return None
+    remark = f"{recording.name}: from {span[0]:.3g} to {span[1]:.3g} s {NOTHING}; it is left out."
+    return Apart(_said(rest, data, remark, disturbed=False), remark)
+
+
+def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:
+    """`rest` with what was said of the data `before`, and the remark."""
+    kept = tuple(each for each in before.left_out if each not in rest.left_out)
+    remarks = (*before.remarks, remark)
+    return replace(rest, left_out=(*rest.left_out, *kept), remarks=remarks, disturbed=disturbed, unlike=before.unlike)

@@ -1,0 +1,48 @@
+"""An input that is logged in coarse steps: what lies between them moved the shaft and is not known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pierburg_ros.diagnosis.remainder.remainder import Remainder
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.estimation.data import rms
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import EXPLAINED, grid
+from pierburg_ros.recording import Recording
+
+AS_MUCH = 3.0
+"""What is left may be so many times what rounding does to the nominal model for that to be its cause. Chosen: roundings
+that are drawn do more or less, and those of long holds count most; not varied."""
+
+
+def rounded(found: Found, recording: Recording) -> str | None:
+    """What to say where all that is left may come from the steps in which the input was logged; None where not."""
+    values = recording.command.values
+    step = grid(values)
+    if step == 0.0:
+        return None
+    held = np.cumsum(np.diff(values, prepend=values[0]) != 0.0)
+    off = np.random.default_rng(0).uniform(-0.5, 0.5, held[-1] + 1)[held] * step
+    moved = []
+    for run in found.data.runs:
+        place = np.searchsorted(recording.command.time, run.inputs.time, side="right") - 1
+        command = np.clip(run.inputs.command + np.where(place < 0, 0.0, off[np.maximum(place, 0)]), -1.0, 1.0)
+        between = replace(run, inputs=replace(run.inputs, command=command))
+        moved.append(between.simulated(found.nominal) - run.simulated(found.nominal))
+    does = rms(np.concatenate(moved)) / found.data.noise
+    if np.hypot(1.0, does) <= EXPLAINED or found.chosen.ratio > AS_MUCH * np.hypot(1.0, does):
+        return None
+    size = f"{does * found.data.noise:.2g} {found.data.actuator.unit}"
+    return (
+        f"{recording.name}: the {recording.input} is logged in steps of {step:.3g}. If what was applied lay between"
+        f" them, that moves the signal by some {size}, as much as is left: nothing can be concluded. Log the"
+        f" {recording.input} as it is applied."
+    )
+
+
+def unnamed(found: Found) -> Remainder:
+    """What stands where nothing can be concluded: the nominal model."""
+    return Remainder(found.estimator.restated(found.fits[Explanation()]), {}, {}, {}, None)

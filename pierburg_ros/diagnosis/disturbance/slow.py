@@ -1,0 +1,114 @@
+"""Quantities that may wander slowly while a recording is made: an unlogged supply voltage, the zero of the sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.disturbance.course import Course
+from pierburg_ros.estimation.run import Run
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Channel, Recording
+
+FINE = 0.1
+"""Times between which a supply voltage counts as constant, in the actuator's own time. Derived: 10 ms for
+the valve; at a volt in 3 s it is then known to 2 mV, which moves it by half a millivolt."""
+SUPPLY = 0.1
+"""Usual size of a wander of the supply, as a share of it. Given: a board net of 12 V has 12 to 14.5 V."""
+ZERO = 0.02
+"""Usual size of a wander of the sensor's zero, as a share of the travel. Chosen: 2 % is a bad sensor."""
+
+Simulated = Callable[[Model, Signal], Signal]
+
+
+class Slow(Protocol):
+    """A kind of quantity that wanders."""
+
+    @property
+    def usual(self) -> float:
+        """Usual size of its wander, in the unit of the values at the knots."""
+
+    def simulated(self, run: Run, course: Course) -> Simulated:
+        """What a model measures in `run` while the quantity has these values at the knots, shape (samples,)."""
+
+    def known(self, recording: Recording, course: Course, values: Signal) -> Recording:
+        """`recording` as if the quantity had been measured."""
+
+    def remark(self, course: Course, values: Signal) -> str:
+        """What is to be said of it."""
+
+
+@dataclass(frozen=True)
+class Supply:
+    """The supply voltage, nominally a `voltage` [V], whose logarithm wanders."""
+
+    voltage: float
+    own_time: float
+    usual: float = SUPPLY
+
+    def simulated(self, run: Run, course: Course) -> Simulated:
+        """See `Slow`."""
+        given = run.inputs
+        fine = np.arange(run.time[0], run.time[-1], FINE * self.own_time)
+        time = np.unique(np.concatenate([given.time, fine]))
+        place = np.maximum(np.searchsorted(given.time, time, side="right") - 1, 0)
+        enabled = None if given.enabled is None else given.enabled[place]
+        basis = course.basis(time)
+
+        def simulated(model: Model, values: Signal) -> Signal:
+            supply = self.voltage * np.exp(basis @ values)
+            inputs = replace(given, time=time, command=given.command[place], supply_voltage=supply, enabled=enabled)
+            return replace(run, inputs=inputs).simulated(model)
+
+        return simulated
+
+    def known(self, recording: Recording, course: Course, values: Signal) -> Recording:
+        """See `Slow`."""
+        time = np.arange(recording.time[0], recording.time[-1], FINE * self.own_time)
+        supply = self.voltage * np.exp(course.basis(time) @ values)
+        return replace(recording, supply_voltage=Channel(time, supply))
+
+    def remark(self, course: Course, values: Signal) -> str:
+        """See `Slow`."""
+        low, high = (self.voltage * float(np.exp(end(values))) for end in (np.min, np.max))
+        return (
+            f"The supply voltage was not logged, and seems to have wandered from {low:.3g} to {high:.3g} V, or"
+            " something else that scales the motor's torque: with that, all else is explained down to the noise. Log it"
+            " as supply_voltage."
+        )
+
+
+@dataclass(frozen=True)
+class Zero:
+    """The zero of the sensor, in a measured `unit`."""
+
+    unit: str
+    usual: float
+
+    def simulated(self, run: Run, course: Course) -> Simulated:
+        """See `Slow`."""
+        basis = course.basis(run.time)
+        last: list[tuple[Model, Signal]] = []
+
+        def simulated(model: Model, values: Signal) -> Signal:
+            if not last or last[0][0].values != model.values:
+                last[:] = [(model, run.simulated(model))]
+            return np.asarray(last[0][1] + basis @ values)
+
+        return simulated
+
+    def known(self, recording: Recording, course: Course, values: Signal) -> Recording:
+        """See `Slow`."""
+        return replace(recording, measured=recording.measured - course.basis(recording.time) @ values)
+
+    def remark(self, course: Course, values: Signal) -> str:
+        """See `Slow`."""
+        span = float(np.ptp(values))
+        return (
+            f"The zero of the sensor seems to have wandered by {span:.2g} {self.unit}: with that, all else is explained"
+            " down to the noise. Look at its supply, its fixing and its temperature, or log a reading at a stop."
+        )

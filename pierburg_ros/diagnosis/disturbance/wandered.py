@@ -1,0 +1,69 @@
+"""An explanation together with a quantity that wanders, fitted at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.diagnosis.disturbance.course import Course
+from pierburg_ros.diagnosis.disturbance.slow import Slow
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
+from pierburg_ros.estimation.least_squares import BRIEF, FULL, minimise
+
+FARTHEST = 4.0
+"""Bound of a wander, in usual sizes. Chosen: a bound that no fit should meet; not varied."""
+ROUGHLY = 1e-3
+"""Share of its cost that an iteration must gain for the fit to go on. Work: what is gained later decides nothing."""
+STEP = 0.02
+"""Step of the finite differences, in usual sizes. Derived: 0.2 % of the supply, which moves the valve by its noise."""
+
+
+@dataclass(frozen=True)
+class Wandered:
+    """Where a joint fit ended: the values at the knots, and what is left over the noise on samples that trained and on
+    those that validate."""
+
+    course: Course
+    values: Signal
+    trained: float
+    validated: float
+
+
+def wandered(data: Data, fit: Fit, slow: Slow, estimator: Estimator) -> Wandered:
+    """The quantity's course beside the explanation of `fit`, both fitted to the training samples.
+
+    First large errors are forgiven, as a slip at the wrong moment displaces all that follows.
+    """
+    times = [each.time for each in data.runs]
+    course = Course.over(float(times[0][0]), float(times[-1][-1]), data.scales.time)
+    acting = [slow.simulated(run, course) for run in data.runs]
+    coordinates, size = estimator.coordinates(fit.explanation), len(fit.explanation.names)
+    train = data.train
+
+    def left(point: Signal) -> Signal:
+        model, _ = estimator.models(fit.explanation, coordinates.values(point[:size]))
+        parts = [run.measured - each(model, point[size:]) for run, each in zip(data.runs, acting, strict=True)]
+        return np.nan_to_num(np.concatenate(parts) / data.noise, nan=1e3, posinf=1e3, neginf=-1e3)
+
+    def cost(point: Signal, forgiving: bool) -> Signal:
+        residual = left(point)[train]
+        own = course.cost(point[size:], slow.usual)
+        return np.concatenate([forgiven(residual) if forgiving else residual, own])
+
+    count = course.knots.size
+    ends, far = coordinates.bounds, np.full(count, FARTHEST * slow.usual)
+    lower, upper = np.concatenate([ends[0], -far]), np.concatenate([ends[1], far])
+    steps = np.concatenate([coordinates.steps, np.full(count, STEP * slow.usual)])
+    point = np.concatenate([coordinates.point(fit.values), np.zeros(count)])
+    for forgiving, iterations in ((True, FULL), (False, BRIEF)):
+        point = minimise(partial(cost, forgiving=forgiving), point, lower, upper, steps, iterations, ROUGHLY).point
+    residual = left(point)
+    return Wandered(course, point[size:], _rms(residual, train), _rms(residual, data.validation))
+
+
+def _rms(residual: Signal, samples: Flags) -> float:
+    return float(np.sqrt(np.mean(np.square(residual[samples])))) if np.any(samples) else 0.0

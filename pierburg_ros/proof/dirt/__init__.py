@@ -1,0 +1,1 @@
+"""Recordings as they come from real benches: what disturbs the valve, and what spoils its log."""

@@ -1,0 +1,122 @@
+"""What acted on a recording and is no physics of the actuator is set apart where it explains what nothing else does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.recordings import NOISE, NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.disturbance.apart import NOTHING, slow_quantities, without_stretch
+from pierburg_ros.diagnosis.disturbance.course import Course
+from pierburg_ros.diagnosis.disturbance.slow import ZERO, Supply, Zero
+from pierburg_ros.diagnosis.disturbance.wandered import wandered
+from pierburg_ros.diagnosis.disturbance.window import confined
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.plant import simulate
+from pierburg_ros.recording import Channel
+
+ONE = recording({})
+NOISES = NOISE * np.random.default_rng(5).standard_normal(ONE.time.size)
+
+
+def driven(**inputs):
+    """ONE as the nominal valve makes it under other inputs."""
+    given = replace(inputs_of(ONE), **inputs)
+    return replace(ONE, measured=simulate(NOMINAL, given, ONE.time) + NOISES)
+
+
+def fitted_to(given):
+    data = data_on(given)
+    estimator = Estimator(data, NOMINAL)
+    return data, estimator, estimator.at(Explanation())
+
+
+def held(values):
+    """`values` at the samples of ONE as a channel for its changes of duty."""
+    return np.interp(inputs_of(ONE).time, ONE.time, values)
+
+
+def test_seconds_of_an_open_bridge_are_left_out():
+    time = inputs_of(ONE).time
+    given = driven(enabled=(time < 9.0) | (time >= 12.0))
+    data, estimator, fit = fitted_to(given)
+    assert fit.ratio > 10.0
+    apart = without_stretch(data, estimator, fit, given)
+    (omission,) = apart.data.left_out
+    start, end = omission.span
+    assert omission.why == NOTHING and 8.0 < start < 9.5 and 11.5 < end < 14.5
+    assert Estimator(apart.data, NOMINAL).at(Explanation()).ratio < EXPLAINED
+    assert len(apart.data.runs) == 2 and not any(np.any((r.time > start) & (r.time < end)) for r in apart.data.runs)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"coulomb_friction": 0.25},
+        {"sensor_lag.time_constant": 0.02},
+        {"cogging_torque.amplitude": 0.03, "cogging_torque.periods_per_motor_revolution": 2.0},
+    ],
+    ids=str,
+)
+def test_physics_is_not_left_out(changes):
+    data, estimator, fit = fitted_to(recording(changes))
+    assert fit.ratio > EXPLAINED and without_stretch(data, estimator, fit, ONE) is None
+
+
+def test_a_stretch_is_confined_where_it_is():
+    data = data_on(ONE)
+    residual = np.random.default_rng(1).standard_normal(ONE.time.size)
+    assert confined(data, residual) is None
+    residual[(ONE.time > 10.0) & (ONE.time < 13.0)] *= 20.0
+    start, end = confined(data, residual)
+    assert 9.4 < start <= 10.0 and 13.0 <= end < 13.6
+    residual[ONE.time > 20.0] *= 20.0
+    assert confined(data, residual) is None
+
+
+def test_a_supply_that_wandered_is_told_from_the_motion():
+    true = 13.5 * (1.0 + 0.07 * np.sin(2.0 * np.pi * ONE.time / 15.0))
+    given = driven(supply_voltage=held(true))
+    data, estimator, fit = fitted_to(given)
+    supply = Supply(13.5, data.scales.time)
+    found = wandered(data, fit, supply, estimator)
+    assert max(found.trained, found.validated) < EXPLAINED < 0.1 * fit.ratio
+    known = supply.known(given, found.course, found.values).supply_voltage
+    middle = (ONE.time > 2.0) & (ONE.time < 22.0)
+    assert np.sqrt(np.mean((known.at(ONE.time) - true)[middle] ** 2)) < 0.15
+
+
+def test_a_sensor_whose_zero_wandered_is_told_from_the_motion():
+    drift = 0.04 * np.cos(2.0 * np.pi * ONE.time / 20.0)
+    data, estimator, fit = fitted_to(replace(ONE, measured=ONE.measured + drift))
+    zero = Zero("V", ZERO * data.scales.reading)
+    found = wandered(data, fit, zero, estimator)
+    assert max(found.trained, found.validated) < EXPLAINED < fit.ratio
+    assert np.max(np.abs(found.course.basis(ONE.time) @ found.values - drift)) < 2.0 * NOISE
+
+
+@pytest.mark.parametrize("slow", [Supply(13.5, 0.095), Zero("V", 0.08)], ids=["supply", "zero"])
+def test_what_wanders_does_not_stand_for_physics(slow):
+    data, estimator, fit = fitted_to(
+        recording({"static_friction.breakaway_torque": 0.3, "static_friction.stribeck_velocity": 0.1})
+    )
+    found = wandered(data, fit, slow, estimator)
+    assert max(found.trained, found.validated) > 2.0
+
+
+def test_a_course_is_smooth_between_its_knots_and_still_beyond():
+    course = Course.over(0.0, 24.0, 0.095)
+    values = np.sin(2.0 * np.pi * course.knots / 12.0)
+    inside = np.linspace(4.0, 20.0, 100)
+    assert np.max(np.abs(course.basis(inside) @ values - np.sin(2.0 * np.pi * inside / 12.0))) < 0.01
+    assert course.basis(np.array([30.0])) @ values == pytest.approx(values[-1])
+
+
+def test_only_a_supply_that_was_not_recorded_may_have_wandered():
+    data = data_on(ONE)
+    logged = replace(ONE, supply_voltage=Channel(ONE.time[:1], np.array([13.5])))
+    assert [type(each) for each in slow_quantities(ONE, data, NOMINAL)] == [Supply, Zero]
+    assert [type(each) for each in slow_quantities(logged, data, NOMINAL)] == [Zero]

@@ -1,0 +1,63 @@
+"""The blocks of code on the pages of the documentation, and the commands in them."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from pierburg_ros.cli import app
+
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(
+    r"^(?P<margin> *)```(?P<language>\S*)\n(?P<text>.*?)^(?P=margin)```$", flags=re.MULTILINE | re.DOTALL
+)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block between fences: its page (a path from the root), its language, its text."""
+
+    page: str
+    language: str
+    text: str
+
+
+def pages() -> list[str]:
+    """The paths of all pages, from the root."""
+    own = [path for path in (ROOT / "docs").rglob("*.md") if path.name != "README.template.md"]
+    return ["README.md", "CONTRIBUTING.md", *sorted(str(path.relative_to(ROOT)) for path in own)]
+
+
+def blocks(page: str, *languages: str) -> list[Block]:
+    """The blocks of a page in some languages, or all."""
+    found = BLOCK.finditer((ROOT / page).read_text(encoding="utf-8"))
+    every = (Block(page, each["language"], textwrap.dedent(each["text"])) for each in found)
+    return [block for block in every if not languages or block.language in languages]
+
+
+def commands(block: Block) -> Iterator[list[str]]:
+    """The commands of a block of shell, as words; comments are left out."""
+    for line in block.text.replace("\\\n", " ").splitlines():
+        words = shlex.split(line, comments=True)
+        if words:
+            yield words
+
+
+def run_shown(words: list[str]) -> None:
+    """Run a command of ours, an example or a command of the shell in the present folder."""
+    if words[0] == "pierburg":
+        with pytest.raises(SystemExit) as ending:
+            app.main(words[1:])
+        assert ending.value.code == 0, words
+    elif words[0] == "python":
+        subprocess.run([sys.executable, *words[1:]], check=True)
+    else:
+        subprocess.run(words, check=True)
