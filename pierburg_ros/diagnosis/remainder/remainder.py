@@ -11,8 +11,8 @@ from pierburg_ros.diagnosis.remainder.around import supported_around
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
-from pierburg_ros.diagnosis.remainder.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -61,7 +61,7 @@ def remainder(
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := _named(found, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -76,10 +76,13 @@ def remainder(
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
 
 
-def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
+def _named(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+    """What may be named beside what remains: what repeats itself with every turn, or what carries most evidence."""
     around = supported_around(found.data, found.nominal, found.recalibrated)
-    return around or supported(found.data, found.nominal, pool, progress)
+    if around:
+        return around
+    beside = found.beside or supported(found.data, found.nominal, pool, progress)
+    return beside.named
 
 
 def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
