@@ -84,10 +84,9 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
     found = undone(named, left, nominal) or undone(tuple(between_stops(signals, nominal)), left, nominal)
     if found:
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
-    if given is not None and given.share >= ENOUGH:
-        if given.agreement >= ENOUGH or in_balance(signals, nominal):
-            return None
-    return unrelated(signals, given, nominal)
+    moves = given is not None and given.share >= ENOUGH
+    agrees = given is not None and given.agreement >= ENOUGH
+    return None if moves and (agrees or in_balance(signals, nominal)) else unrelated(signals, given, nominal)
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:
