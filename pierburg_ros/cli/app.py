@@ -143,8 +143,11 @@ COMMANDS = {
         ),
     ),
     "tune": Command(
-        "PIFLC gains and sets for a stated goal over a set of plants.",
-        examples=("pierburg tune -o controller.yaml", "pierburg tune --overshoot 1 --settling 3 -o soft.yaml"),
+        "PIFLC gains and sets for a corrected model, or for a set of plants.",
+        examples=(
+            "pierburg tune --model model.yaml -o controller.yaml",
+            "pierburg tune --overshoot 1 --settling 3 -o soft.yaml",
+        ),
     ),
 }
 

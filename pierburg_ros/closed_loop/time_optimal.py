@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from pierburg_ros.closed_loop.predictor import dead_time
 from pierburg_ros.plant import Model
 
 PERIODS = 2  # a sample may just have missed the setpoint, and its duty acts one sample later
@@ -29,6 +30,6 @@ def full_duty_travel_time(model: Model, start: float, end: float) -> float:
 
 
 def settling_bound(model: Model, start: float, target: float, band: float, rate: float = 500.0) -> float:
-    """Shortest settling time [s] of a step: full-duty travel to the band's edge, and two sample periods."""
+    """Shortest settling time [s] of a step: full-duty travel to the band's edge, two sample periods, and dead time."""
     edge = target - math.copysign(band, target - start)
-    return full_duty_travel_time(model, start, edge) + PERIODS / rate
+    return full_duty_travel_time(model, start, edge) + PERIODS / rate + dead_time(model)

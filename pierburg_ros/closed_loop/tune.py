@@ -39,22 +39,25 @@ class Task:
     design: Design
     goal: Goal
     plants: Mapping[str, Model]
+    stated: Sequence[str] = STATED
+    """The plants that count most, `NOMINAL` first."""
 
     def cost(self, settings: Settings, course: Course, at_most: float = math.inf) -> float:
         """How far the responses fall short of the goal; counting stops above `at_most`."""
         responses = [self.response(NOMINAL, settings, course, seed) for seed in SEEDS[True]]
         bounds = settling_bounds(self.plants[NOMINAL], RATE)
-        total = worst = shortfall(responses, self.goal.nominal_limits(bounds)) / len(STATED)
+        total = worst = shortfall(responses, self.goal.nominal_limits(bounds)) / len(self.stated)
         settling = np.maximum(np.median(responses, axis=0)[:, 0], bounds)
         other_limits = self.goal.other_limits(settling)
-        others = [*STATED[1:], *(name for name in self.plants if name not in STATED)]
+        rest = [name for name in self.plants if name not in self.stated]
+        others = [*self.stated[1:], *rest]
         for name in others:
             if total > at_most or total == math.inf:
                 break
-            stated = name in STATED
+            stated = name in self.stated
             responses = [self.response(name, settings, course, seed) for seed in SEEDS[stated]]
             missed = shortfall(responses, other_limits)
-            total += missed / len(STATED) if stated else OTHERS * missed / (len(others) - 2)
+            total += missed / len(self.stated) if stated else OTHERS * missed / len(rest)
             worst = max(worst, missed)
         return total + WORST * worst
 
@@ -82,12 +85,13 @@ def tune(
     seed: int = 1,
     on_generation: Callable[[float], None] = lambda best: None,
     jobs: int | None = None,
+    known: Sequence[Settings] = (),
 ) -> Settings:
-    """The best settings found, `jobs` candidates tried at a time; the same seed finds the same."""
+    """The best settings found or `known`, `jobs` candidates tried at a time; the same seed finds the same."""
 
     def cost(point: Signal, at_most: float) -> float:
         return task.cost(task.design.settings(point), SHORT, at_most)
 
     found = search(cost, task.design.bounds, generations, members, seed, on_generation, jobs)
-    finalists = [task.design.settings(point) for point in found.points[:FINALISTS]]
+    finalists = [*known, *(task.design.settings(point) for point in found.points[:FINALISTS])]
     return min(finalists, key=lambda settings: task.cost(settings, Course()))

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.control import predictor
 from pierburg_ros.control.fuzzy import duty_of, pi_output_for
 from pierburg_ros.kernel import kernel
 
@@ -30,6 +31,7 @@ STATE = [
     ("pi_output", np.float64),  # [V]
     ("transfer", np.float64),  # still added to the duty after a start or a change of settings [1]
     ("duty", np.float64),  # last duty given out [1]
+    *predictor.STATE,
 ]
 
 
@@ -44,6 +46,7 @@ def forget(state: Any) -> None:
     state.started = state.saturated = False
     state.error = state.derivative = state.integral = state.pi_output = 0.0
     state.transfer = state.duty = 0.0
+    predictor.forget(state)
 
 
 @kernel
@@ -59,8 +62,10 @@ def step(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: fl
 @kernel
 def follow(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: float) -> None:
     """Bring error, derivative of the error and PI output up to a sample."""
-    error = min(max(voltage(settings, setpoint) - hall_voltage, -LARGEST), LARGEST)
     dt = min(dt, LONGEST)
+    if state.started and dt >= SHORTEST:
+        hall_voltage = predictor.predicted(settings, state, hall_voltage, state.duty, dt)
+    error = min(max(voltage(settings, setpoint) - hall_voltage, -LARGEST), LARGEST)
     if state.started and dt >= SHORTEST:
         slope = (error - state.error) / dt
         state.derivative += (slope - state.derivative) * dt / (dt + settings.derivative_time_constant)

@@ -50,6 +50,12 @@ class Settings:
     transfer_time: float = declared(
         0.01, "s", 1e-6, 10.0, "time constant of the duty's transition after a start or a change"
     )
+    predictor_delay: float = declared(0.0, "s", 0.0, 10.0, "delay that the predictor looks over; 0: none")
+    predictor_lag: float = declared(0.0, "s", 0.0, 10.0, "lag of the sensor that the predictor makes up for; 0: none")
+    predictor_speed: float = declared(0.0, "V/s", 0.0, 1e6, "Hall voltage per time and duty beyond load and friction")
+    predictor_hold_closed: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the closed stop")
+    predictor_hold_open: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the open stop")
+    predictor_friction: float = declared(0.0, "1", 0.0, 1.0, "duty that overcomes friction")
     angle_closed: float = declared(0.0, "rad", -100.0, 100.0, "shaft angle at the closed stop")
     angle_open: float = declared(math.pi / 2, "rad", -100.0, 100.0, "shaft angle at the open stop")
     hall_voltage_closed: float = declared(0.42, "V", -100.0, 100.0, "Hall voltage at the closed stop")

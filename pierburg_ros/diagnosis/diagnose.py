@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
@@ -11,9 +12,9 @@ from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.disturbance.apart import apart
 from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
-from pierburg_ros.diagnosis.evidence.turn import has_overtones
 from pierburg_ros.diagnosis.limits.limits import limits
-from pierburg_ros.diagnosis.remainder.remainder import remainder, unexamined
+from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
+from pierburg_ros.diagnosis.remainder.turn import has_overtones
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
@@ -58,18 +59,7 @@ def diagnose(
     data = said_of(each_cleaned, evidence(recordings, nominal))
     data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
-    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-    beam = Beam(depth=0) if has_overtones(data, nominal) else None
-    found = search(data, nominal, progress, jobs, beam, deadline)
-    if verdict_on(found.chosen) == "unexplained" and len(recordings) == 1:
-        before = found
-        found = deadline.attempt(lambda: apart(before, recordings[0], progress, jobs, deadline), before)
-    rest = None
-    if verdict_on(found.chosen) == "unexplained" and (doubt := _doubt(found, recordings)):
-        found, rest = replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
-    elif verdict_on(found.chosen) == "unexplained":
-        tell = staged(progress, "what remains")
-        rest = deadline.attempt(lambda: remainder(found, tell, jobs, deadline), unexamined(found))
+    found, rest = examined(data, nominal, recordings, progress, jobs, deadline)
     conclusion = conclude(found, rest)
     if found.data.disturbed:
         conclusion = replace(conclusion, verdict="unexplained")
@@ -78,14 +68,34 @@ def diagnose(
     )
     excluded = limits(found, conclusion.final, progress, jobs, deadline)
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    shown = signals(longest(data), conclusion)
-    result = Result(written, conclusion.model, data.runs, shown, exhibits(found, conclusion))
+    shown = signals(longest(found.data), conclusion)
+    result = Result(written, conclusion.model, found.data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result
 
 
-def _doubt(found: Found, recordings: Sequence[Recording]) -> str | None:
-    """Why nothing that is left of a recording may be named."""
-    return rounded(found, recordings[0]) if len(recordings) == 1 else None
+def examined(
+    data: Data,
+    nominal: Model,
+    recordings: Sequence[Recording],
+    progress: Progress,
+    jobs: int | None,
+    deadline: Deadline,
+) -> tuple[Found, Remainder | None]:
+    """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
+    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
+    beam = Beam(depth=0) if has_overtones(data, nominal) else None
+    found, single = search(data, nominal, progress, jobs, beam, deadline), len(recordings) == 1
+    if verdict_on(found.chosen) != "unexplained":
+        return found, None
+    if single and (doubt := rounded(found, recordings[0])):
+        return replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
+    if single:
+        tell = staged(progress, "disturbances")
+        found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
+        if verdict_on(found.chosen) != "unexplained":
+            return found, None
+    tell = staged(progress, "what remains")
+    return found, deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

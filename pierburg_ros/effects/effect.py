@@ -227,6 +227,10 @@ class Effect:
     """A parameter of it that, acting throughout, is the same as a change of a base parameter: both names."""
     play: str | None = None
     """The parameter that is the width of a free play [rad]: the driven side follows when that is used up."""
+    dead_time: str | None = None
+    """The parameter that is a time [s] for which a command has no effect."""
+    lag: str | None = None
+    """The parameter that is the time constant [s] of a first-order lag of the measurement."""
     rounds: str | None = None
     """The parameter that is the step of a converter, seen in the samples and not searched for."""
     put_in: PutIn | None = None

@@ -46,4 +46,5 @@ EFFECT = Effect(
     linear=True,
     jumps=True,
     put_in=put_in,
+    dead_time="delay",
 )

@@ -53,6 +53,7 @@ EFFECT = Effect(
     # rad, the angle that the sensor shows
     state=("lagged",),
     memory="brief",
+    lag="time_constant",
     linear=True,
     put_in=put_in,
 )

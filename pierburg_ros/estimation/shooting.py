@@ -18,7 +18,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.torque_balance import WINDOW
 from pierburg_ros.plant import Inputs, Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
+from pierburg_ros.plant.decode import angle_per_unit, decoded, lead, turned
 from pierburg_ros.plant.simulate import simulate_stretches
 from pierburg_ros.recording.noise import noise_of
 
@@ -87,7 +87,8 @@ class Shooting:
         scale = abs(angle_per_unit(model))
         value = decoded(model, self.level, quantity)
         if quantity != "speed":
-            return value, self.rate * angle_per_unit(model), self.level_error * scale, self.rate_error * scale
+            velocity = self.rate * angle_per_unit(model)
+            return value + lead(model) * velocity, velocity, self.level_error * scale, self.rate_error * scale
         angle = turned(model, time, measured, quantity)[self.first]
         return angle, value, np.full(value.size, UNKNOWN_ANGLE * model.scales.angle), self.level_error * scale
 

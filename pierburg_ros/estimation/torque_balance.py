@@ -27,7 +27,7 @@ SLOW_PART = 0.1
 """Share of the steps between samples that are finer than the one by which the highest frequency is told. Chosen: the
 slow tenth of a movement shows what the rest is too fast for."""
 TURN = 2.0 * math.pi
-"""Angle after which a shaft is where it was [rad]."""
+"""Angle after which a shaft is where it was [rad]. Derived: one turn in radian."""
 WHOLE = 0.9
 """Share of a turn that a shaft has to be seen in for a map of it. Chosen: the rest of its orders tell the tenth."""
 FALSE_ALARM = 0.01
@@ -46,21 +46,28 @@ OUTLYING = 12.0
 shaft that is caught in motion or knocked lies beyond, one that slips does not."""
 LATE = 0.5
 """Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
-controller whose current is recorded behind one it is a third to a ninth (n = 3)."""
+controller whose current is recorded behind one it is a quarter to a third (n = 3)."""
 
 
 @dataclass(frozen=True)
 class Balance:
     """What makes up the motor torque: `lag` [s] of its record, and over a turn `cosines` and `sines` [N.m] by `orders`.
 
-    `left` is the root mean square [N.m] of what nothing makes up.
+    `friction` [N.m] is what resists the movement on average, `left` the root mean square [N.m] of what nothing makes up.
     """
 
     lag: float
     orders: NDArray[np.int64]
     cosines: Signal
     sines: Signal
+    friction: float
     left: float
+
+    @property
+    def strongest(self) -> tuple[float, float, int]:
+        """Cosine and sine [N.m] of the strongest order, and which it is."""
+        place = int(np.argmax(np.hypot(self.cosines, self.sines)))
+        return float(self.cosines[place]), float(self.sines[place]), int(self.orders[place])
 
     @property
     def lesser(self) -> Balance:
@@ -184,7 +191,8 @@ def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tup
         known = np.concatenate([known, cosines[:, order - 1 : order], sines[:, order - 1 : order]], axis=1)
     lag = float(found[first - 1]) if lagged else 0.0
     cosine, sine = found[first::2], found[first + 1 :: 2]
-    return Balance(lag, np.array(orders, dtype=np.int64), cosine, sine, float(np.std(left[kept]))), kept
+    friction = max(float(found[1] + found[0] * np.mean(known[kept, 1])), 0.0)
+    return Balance(lag, np.array(orders, dtype=np.int64), cosine, sine, friction, float(np.std(left[kept]))), kept
 
 
 def _least_squares(known: Signal, wanted: Signal) -> Signal:

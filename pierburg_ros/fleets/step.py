@@ -44,23 +44,22 @@ class Step:
 def step(course: Course) -> Step | None:
     """The clearest step beside a line; None where no moment has recordings enough on either side.
 
-    Every gap between two recordings is tried with the scatter of the best of them. The chance is that of the best gap
-    times the number of gaps (Bonferroni), which is cautious: neighbouring gaps are alike.
+    Every gap between two recordings is tried: with the scatter about a line, then with that about the best step. The
+    chance is that of the best gap times the number of gaps (Bonferroni): cautious, since neighbouring gaps are alike.
     """
-    moments = gaps(course)
-    tried = [(fitted(course, moment), moment) for moment in moments]
-    known = [(found, moment) for found, moment in tried if found is not None]
-    if not known:
+    moments, straight = gaps(course), regression(columns(course)[0], course.value, course.deviation)
+    tried = steps_at(course, moments, 0.0 if straight is None else straight.scatter)
+    if not tried:
         return None
-    scatter = min(found.scatter for found, _ in known)
-    again = [(fitted(course, moment, scatter), moment) for _, moment in known]
-    best, moment = min(
-        ((found, moment) for found, moment in again if found is not None), key=lambda each: each[0].squares
-    )
+    own = fitted(course, min(tried, key=lambda each: each[0].squares)[1])
+    again = [] if own is None else steps_at(course, moments, own.scatter)
+    if not again:
+        return None
+    best, moment = min(again, key=lambda each: each[0].squares)
     own = fitted(course, moment)
-    if own is None or curve_squares(course, scatter) < best.squares + BEYOND_CURVE:
+    if own is None or curve_squares(course, best.scatter) < best.squares + BEYOND_CURVE:
         return None
-    allowed = [when for found, when in again if found is not None and found.squares <= best.squares + RISE]
+    allowed = [when for found, when in again if found.squares <= best.squares + RISE]
     place = int(np.searchsorted(course.time, moment))
     first = int(np.searchsorted(course.time, min(allowed)))
     return Step(
@@ -79,6 +78,12 @@ def gaps(course: Course) -> list[float]:
     inside = course.time[EITHER_SIDE : course.size - EITHER_SIDE + 1]
     before = course.time[EITHER_SIDE - 1 : course.size - EITHER_SIDE]
     return [float(time) for time, last in zip(inside, before, strict=True) if time > last]
+
+
+def steps_at(course: Course, moments: list[float], scatter: float) -> list[tuple[Regression, float]]:
+    """The regressions with a step at each of some moments [days] that can be told, with this `scatter`."""
+    found = [(fitted(course, moment, scatter), moment) for moment in moments]
+    return [(each, moment) for each, moment in found if each is not None]
 
 
 def fitted(course: Course, moment: float, scatter: float | None = None) -> Regression | None:

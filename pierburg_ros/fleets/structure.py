@@ -16,6 +16,9 @@ from pierburg_ros.effects import EFFECT
 
 FEWEST = 2
 """Recordings whose diagnoses must change a base parameter. Chosen: one alone may be chance; not varied."""
+HALF = 0.5
+"""Share of the recordings that must determine a base parameter of the common model. Chosen: a course of one below has
+more gaps than points; not varied."""
 SELDOM = 0.02
 """Share of all recordings below which a base parameter is left out. Chosen: of 1,000 recordings one unit's 25 count;
 not varied."""
@@ -49,6 +52,9 @@ def own_effects(found: Sequence[Mapping[str, Any]]) -> tuple[dict[str, float], t
 
 
 def without_least(names: Sequence[str], determined: Mapping[str, float]) -> tuple[str, ...]:
-    """The base parameters less the last one, where one of them is not determined by half the recordings."""
-    poor = any(share < 0.5 for share in determined.values())
-    return tuple(names[:-1]) if poor and len(names) > 1 else tuple(names)
+    """The base parameters less the last of those that half the recordings leave undetermined, if there is one.
+
+    Where some cannot be told apart, all of these are undetermined, and the one that most diagnoses change stays.
+    """
+    poor = [name for name in names if determined.get(name, 1.0) < HALF]
+    return tuple(name for name in names if name != poor[-1]) if poor else tuple(names)

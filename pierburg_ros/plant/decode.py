@@ -27,6 +27,11 @@ def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(record["hall_voltage_closed"] + sensor.per_radian(record) * np.asarray(angle, dtype=np.float64))
 
 
+def lead(model: Model) -> float:
+    """Time [s] by which an evenly moving shaft is ahead of what the sensor of `model` shows."""
+    return float(sensor.lead(model.record()[0]))
+
+
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
     """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
     shown = decoded(model, measured, quantity)

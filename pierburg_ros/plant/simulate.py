@@ -13,10 +13,11 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.motion import steady
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import STATE, new_state, place
-from pierburg_ros.plant.torques.sensor import measured, quantised
+from pierburg_ros.plant.torques.sensor import read_all, shown
 from pierburg_ros.workers import workers
 
 LONG_BEFORE = 1e9
@@ -179,7 +180,8 @@ def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]
 
 def _increasing(sample_times: ArrayLike) -> Signal:
     times = np.ascontiguousarray(sample_times, dtype=float)
-    if times.ndim != 1 or times.size == 0 or not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0):
+    ends = times[[0, -1]] if times.ndim == 1 and times.size else np.array([math.nan])
+    if not (np.all(np.isfinite(ends)) and np.all(times[1:] > times[:-1])):
         raise InputError("The sample times are empty or do not increase; expected increasing times. Sort them.")
     return times
 
@@ -218,20 +220,27 @@ def run(p, s, input_times, command, supply_voltage, enabled, sample_times, outpu
     changes = input_times.size
     now = sample_times[0]
     index = np.searchsorted(input_times, now, side="right") - 1
-    for sample in range(sample_times.size):
+    sample = 0
+    while sample < sample_times.size:
         goal = sample_times[sample]
-        while now < goal:
-            until = goal
-            if index + 1 < changes and input_times[index + 1] < goal:
-                until = input_times[index + 1]
+        while True:
             in_force = command[index] if index >= 0 else 0.0
-            supply = supply_voltage[index] if supply_voltage.size > 0 and index >= 0 else np.nan
+            supply = supply_voltage[index] if supply_voltage.size > 0 and index >= 0 else p.supply_voltage
             closed = enabled[index] if enabled.size > 0 and index >= 0 else True
+            change = input_times[index + 1] if index + 1 < changes else math.inf
+            if now >= goal:
+                break
+            until = min(goal, change)
             advance(p, s, in_force, supply, closed, until - now)
             now = until
             while index + 1 < changes and input_times[index + 1] <= now:
                 index += 1
         if not math.isfinite(s.angle):
             output[sample:] = np.nan
-            return
-        output[sample] = quantised(p, measured(p, s))
+            break
+        output[sample] = shown(p, s)
+        sample += 1
+        if steady.holds(p, s, in_force, supply, closed):
+            sample = steady.sampled_on(p, s, sample_times, sample, change, output)
+            now = sample_times[sample - 1]
+    read_all(p, output[:sample])

@@ -9,7 +9,7 @@ import numpy as np
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import level
-from pierburg_ros.plant.torques.sensor import sensed
+from pierburg_ros.plant.torques.sensor import lead, sensed
 
 QUEUE = 1024
 """Changes of the command that may be under way at once when the input is delayed."""
@@ -76,7 +76,9 @@ def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> 
 
 @kernel
 def place(p, s, angle, velocity):
-    """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission and sensor relaxed; `s` is all zeros.
+    """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed, its sensor as after even motion.
+
+    `s` is all zeros.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
     shaft slides as far as that bends them.
@@ -85,7 +87,8 @@ def place(p, s, angle, velocity):
         angle = min(max(angle, p.lower_stop), p.upper_stop)
     s.angle = s.motor_angle = angle
     s.velocity = s.motor_velocity = velocity
-    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = s.sensor_lag.lagged = sensed(p, s)
+    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = sensed(p, s)
+    s.sensor_lag.lagged = sensed(p, s) - lead(p) * velocity
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1
     s.supply = np.nan

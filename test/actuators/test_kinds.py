@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from pierburg_ros.actuators import SHIPPED, actuator_of, read_actuator
+from pierburg_ros.actuators.gauge import in_ratio
 from pierburg_ros.actuators.units import LINEAR, unit_of
 from pierburg_ros.actuators.wording import input_title, place
 from pierburg_ros.effects import DECLARED, EFFECT
@@ -139,3 +140,13 @@ def test_people_read_a_linear_axis_in_millimetres_and_newtons() -> None:
 def test_what_an_actuator_cannot_have(actuator: str, cannot: set[str]) -> None:
     kind = read_actuator(actuator)
     assert {effect.id for effect in EFFECT.values() if kind.obstacle(effect)} == cannot
+
+
+def test_the_size_of_all_torques_is_told_by_no_torque_and_motion():
+    assert in_ratio(read_actuator("ak80"), "torque_scale") == ("gravity_torque",)
+    assert in_ratio(read_actuator("ak80"), "total_inertia") == ()
+    assert (
+        in_ratio(read_actuator("odrive"), "torque_constant")
+        == in_ratio(read_actuator("pierburg"), "torque_scale")
+        == ()
+    )

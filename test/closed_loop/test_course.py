@@ -5,19 +5,28 @@ import math
 import numpy as np
 import pytest
 
-from pierburg_ros.closed_loop.course import STEPS, WAYS, Course
+from pierburg_ros.closed_loop.course import STEPS, STOP_SIZES, WAYS, Course
 from pierburg_ros.closed_loop.loop import Run
 from pierburg_ros.closed_loop.plants import NOMINAL, RESISTANCE, plant_set
 from pierburg_ros.effects import EFFECTS
 
 
-def test_has_every_size_both_ways_in_three_ways():
+def test_has_every_size_both_ways_in_two_ways():
     found = [(round(math.degrees(abs(step.target - step.start))), step.opens) for step in STEPS]
-    assert found == [(size, opens) for size in (5, 20, 50, 80) for opens in (True, False) for _ in range(WAYS)]
+    sizes = (5, 20, 50, 80, *STOP_SIZES)
+    assert found == [(size, opens) for size in sizes for opens in (True, False) for _ in range(WAYS)]
 
 
-def test_each_kind_starts_after_opening_and_after_closing():
-    for first in range(0, len(STEPS), WAYS):
+def test_steps_at_the_closed_stop_begin_or_end_there_and_the_first_has_no_past():
+    at_stop = [step for step in STEPS if step.at_stop]
+    assert len(at_stop) == len(STOP_SIZES) * 2 * WAYS
+    assert all((step.start if step.opens else step.target) == 0.0 for step in at_stop)
+    assert [step.before for step in at_stop if step.opens] == pytest.approx([0.0, math.radians(10.0)] * 2)
+    assert len({step.label for step in STEPS}) == len(STEPS) / WAYS
+
+
+def test_each_kind_in_mid_travel_starts_after_opening_and_after_closing():
+    for first in range(0, len(STEPS) - sum(step.at_stop for step in STEPS), WAYS):
         arrivals = {step.start > step.before for step in STEPS[first : first + 2]}
         assert arrivals == {True, False}
 

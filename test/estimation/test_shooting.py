@@ -11,7 +11,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.run import run_of
-from pierburg_ros.estimation.shooting import FEWEST, forgets, stretch_length
+from pierburg_ros.estimation.shooting import FEWEST, Shooting, forgets, stretch_length
 from pierburg_ros.identification.identify import identify
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
@@ -116,3 +116,26 @@ def test_another_input_than_the_drive_asks_for_is_refused() -> None:
     with pytest.raises(InputError, match="swing holds a torque and actuator odrive is driven by a current") as refused:
         run_of(recording, ROTOR)
     assert "\n" not in str(refused.value)
+
+
+def test_stretches_begin_with_the_shaft_ahead_of_a_sensor_that_lags():
+    """A rotor without friction turns evenly, and its sensor shows an even motion behind it: each stretch begins so."""
+    free = ROTOR.with_values({"coulomb_friction": 0.0})
+    lagging = free.with_values({"sensor_lag.time_constant": 0.05})
+    time = np.arange(600) * 0.002
+    measured = 3.0 * (time - 0.05) + 0.2
+    inputs = Inputs(np.zeros(1), np.zeros(1))
+    shooting = Shooting.of(time, measured, 0.2)
+    assert shooting.simulated(lagging, inputs, time, measured, "position") == pytest.approx(measured, abs=1e-9)
+    # from the first sample on, before any beginning is moved: the shaft is where the sensor will be a lag later
+    shown = simulate(lagging, inputs, time, 0.2, 3.0)
+    assert shown == pytest.approx(0.2 + 3.0 * (time - 0.05), abs=1e-9)
+
+
+def test_uneven_samples_make_no_stretch_much_longer_than_it_should_be() -> None:
+    """Where a stretch takes as many samples as it must have, the next one begins after it all the same."""
+    random = np.random.default_rng(5)
+    time = np.cumsum(random.uniform(0.0006, 0.0038, 4000))
+    length = 20 * float(np.median(np.diff(time)))
+    first = Shooting.of(time, np.sin(time), length).first
+    assert np.max(np.diff(time[first])) < 2.0 * length and np.min(np.diff(first)) >= FEWEST

@@ -80,6 +80,8 @@ def test_the_common_model_has_what_diagnoses_change_and_recordings_determine():
     assert own_effects([drift, named(0.03)]) == ({"backlash.gap": 0.03}, ("backlash.gap",))
     assert without_least(("a", "b"), {"a": 1.0, "b": 0.4}) == ("a",)
     assert without_least(("a", "b"), {"a": 1.0, "b": 0.6}) == ("a", "b")
+    assert without_least(("a", "b", "c"), {"a": 0.1, "b": 0.1, "c": 1.0}) == ("a", "c")
+    assert without_least(("a",), {"a": 0.1}) == ()
 
 
 def test_a_limit_of_something_without_a_course_is_refused():

@@ -1,4 +1,4 @@
-"""The page of a fleet in a real browser: sorted, filtered, opened, and quick with a thousand units."""
+"""The page of a fleet in a real browser: sorted, filtered, opened, with a thousand units."""
 
 import pytest
 from support.browser import CHROMIUM, DRIVER, browser
@@ -39,13 +39,10 @@ def test_the_most_urgent_unit_stands_first(opened):
     assert opened.errors() == []
 
 
-def test_a_title_sorts_to_and_fro_within_a_tenth_of_a_second_of_work(opened):
+def test_a_title_sorts_to_and_fro(opened):
     for expected in ("valve-000", f"valve-{UNITS - 1}"):
         click(opened, "unit")
         assert first(opened) == expected
-    sort = "document.querySelector('#fleet thead button').click(); document.body.offsetHeight;"
-    took = opened.run(f"const begin = performance.now(); {sort} return performance.now() - begin")
-    assert took >= 0.0  # how long it takes is measured in docs/fleet.md
     assert opened.run("return document.querySelectorAll('#fleet th[aria-sort]').length") == 1
 
 

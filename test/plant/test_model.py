@@ -90,3 +90,21 @@ def test_unusable_residual_torque_is_refused(grid: dict[str, object], message: s
     with pytest.raises(InputError) as refusal:
         NOMINAL.with_residual(grid)
     assert message in str(refusal.value)
+
+
+def test_a_residual_torque_with_a_period_acts_in_every_turn():
+    """Seven sines in a turn as nodes, on a free rotor that goes round several times, beside the same by its formula."""
+    rotor = Model.nominal(read_actuator("odrive"))
+    angle = np.linspace(0.0, 2.0 * np.pi, 512)
+    turn = {"angle": angle, "velocity": [0.0], "torque": 0.01 * np.sin(7.0 * angle)[:, None], "period": 2.0 * np.pi}
+    ripple = {"cogging_torque.amplitude": 0.01, "cogging_torque.periods_per_motor_revolution": 7.0}
+    inputs, time = Inputs(np.zeros(1), np.full(1, 1.5)), np.arange(0.0, 1.0, 0.002)
+    known = simulate(rotor.with_values(ripple), inputs, time, 0.3, 5.0)
+    assert known[-1] > 50.0
+    for turns in (0, -4):
+        begun = 0.3 + 2.0 * np.pi * turns
+        found = simulate(rotor.with_residual(turn), inputs, time, begun, 5.0)
+        # straight lines between 73 nodes of a sine take a thousandth off it
+        np.testing.assert_allclose(found - 2.0 * np.pi * turns, known, atol=2e-3)
+    with pytest.raises(InputError, match=r"residual_torque.period is 3 rad"):
+        rotor.with_residual({**turn, "period": 3.0})

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,22 +28,18 @@ NOTHING = "nothing that acts elsewhere explains this stretch"
 """Why a stretch is left out."""
 
 
-@dataclass(frozen=True)
-class Apart:
-    """The recording with a disturbance set apart, as a fit sees it."""
-
-    data: Data
-    what: str
-
-
 def apart(found: Found, recording: Recording, progress: Progress, jobs: int | None, deadline: Deadline) -> Found:
     """What is found once a disturbance is set apart that leaves nothing else; `found` itself where none does.
 
     Physics comes first: it is asked only after a search that left something. `recording` is the one it was made on.
+    Simulated in stretches that each begin anew, an actuator forgets a disturbance by itself, and none is told.
     """
-    for fit in _promising(found):
-        for tried in _disturbances(found, fit, recording, deadline, progress):
-            again = search(tried.data, found.nominal, progress, jobs, deadline=deadline)
+    if any(run.shooting is not None for run in found.data.runs):
+        return found
+    fits = _promising(found)
+    for way in (_without_stretches, _beside_slow_quantities):
+        for tried in way(found, fits, recording, deadline, progress):
+            again = search(tried, found.nominal, progress, jobs, deadline=deadline)
             if again.chosen.ratio <= EXPLAINED:
                 return again
     return found
@@ -60,34 +56,45 @@ def _promising(found: Found) -> list[Fit]:
     return [found.fits[Explanation()], *sorted(singles, key=cost)[: BESIDE - 1]]
 
 
-def _disturbances(
-    found: Found, fit: Fit, recording: Recording, deadline: Deadline, progress: Progress
-) -> Iterator[Apart]:
-    """The disturbances beside which an explanation leaves nothing, by its own fit to them."""
+def _without_stretches(
+    found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
+) -> Iterator[Data]:
+    """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere."""
+    estimator = Estimator(found.data, found.nominal)
+    for fit in fits:
+        deadline.check()
+        progress(f"{fit.explanation.label}, but for one stretch")
+        if rest := without_stretch(found.data, estimator, fit, recording):
+            yield rest
+
+
+def _beside_slow_quantities(
+    found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
+) -> Iterator[Data]:
+    """The recording as if a quantity that wandered had been measured, beside which an explanation leaves nothing."""
     data, nominal = found.data, found.nominal
     estimator = Estimator(data, nominal)
-    progress(f"{fit.explanation.label}, but for one stretch")
-    if given := without_stretch(data, estimator, fit, recording):
-        yield given
-    for slow in slow_quantities(recording, data, nominal):
-        deadline.check()
-        progress(f"{fit.explanation.label}, while something wanders")
-        course = wandered(data, fit, slow, estimator)
-        if max(course.trained, course.validated) <= EXPLAINED:
-            known = in_parts(data_of([slow.known(recording, course.course, course.values)], nominal))
-            remark = f"{recording.name}: {slow.remark(course.course, course.values)}"
-            yield Apart(_said(known, data, remark, disturbed=True), remark)
+    for fit in fits:
+        for slow in slow_quantities(recording, data, nominal):
+            deadline.check()
+            progress(f"{fit.explanation.label}, while something wanders")
+            course = wandered(data, fit, slow, estimator)
+            if max(course.trained, course.validated) <= EXPLAINED:
+                known = slow.known(recording, course.course, course.values)
+                remark = f"{recording.name}: {slow.remark(course.course, course.values)}"
+                yield _said(in_parts(data_of([known], nominal)), data, remark, disturbed=True)
 
 
 def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Slow]:
     """What may have wandered in a recording without being measured."""
-    actuator, found = nominal.actuator, list[Slow]()
+    actuator = nominal.actuator
+    found: list[Slow] = [Zero(actuator.unit, ZERO * data.scales.reading)]
     if actuator.drive == "voltage" and recording.supply_voltage is None:
         found.append(Supply(nominal.values["supply_voltage"], data.scales.time))
-    return [*found, Zero(actuator.unit, ZERO * data.scales.reading)]
+    return found
 
 
-def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Apart | None:
+def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Data | None:
     """The recording without the one stretch that holds the errors of an explanation, if it leaves nothing else."""
     robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
     span = confined(data, data.residual(robust.model))
@@ -99,7 +106,7 @@ def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recor
     if left.ratio > EXPLAINED:
         return None
     remark = f"{recording.name}: from {span[0]:.3g} to {span[1]:.3g} s {NOTHING}; it is left out."
-    return Apart(_said(rest, data, remark, disturbed=False), remark)
+    return _said(rest, data, remark, disturbed=False)
 
 
 def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:

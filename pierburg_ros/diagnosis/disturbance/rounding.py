@@ -11,6 +11,7 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.estimation.data import rms
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED, grid
+from pierburg_ros.plant import Inputs
 from pierburg_ros.recording import Recording
 
 AS_MUCH = 3.0
@@ -20,17 +21,12 @@ that are drawn do more or less, and those of long holds count most; not varied."
 
 def rounded(found: Found, recording: Recording) -> str | None:
     """What to say where all that is left may come from the steps in which the input was logged; None where not."""
-    values = recording.command.values
-    step = grid(values)
+    step = grid(recording.command.values)
     if step == 0.0:
         return None
-    held = np.cumsum(np.diff(values, prepend=values[0]) != 0.0)
-    off = np.random.default_rng(0).uniform(-0.5, 0.5, held[-1] + 1)[held] * step
     moved = []
     for run in found.data.runs:
-        place = np.searchsorted(recording.command.time, run.inputs.time, side="right") - 1
-        command = np.clip(run.inputs.command + np.where(place < 0, 0.0, off[np.maximum(place, 0)]), -1.0, 1.0)
-        between = replace(run, inputs=replace(run.inputs, command=command))
+        between = replace(run, inputs=between_steps(run.inputs, recording, step))
         moved.append(between.simulated(found.nominal) - run.simulated(found.nominal))
     does = rms(np.concatenate(moved)) / found.data.noise
     if np.hypot(1.0, does) <= EXPLAINED or found.chosen.ratio > AS_MUCH * np.hypot(1.0, does):
@@ -41,6 +37,16 @@ def rounded(found: Found, recording: Recording) -> str | None:
         f" them, that moves the signal by some {size}, as much as is left: nothing can be concluded. Log the"
         f" {recording.input} as it is applied."
     )
+
+
+def between_steps(inputs: Inputs, recording: Recording, step: float) -> Inputs:
+    """`inputs` of a recording with what may have been applied: off by up to half a step, while a logged value holds."""
+    values = recording.command.values
+    held = np.cumsum(np.diff(values, prepend=values[0]) != 0.0)
+    off = np.random.default_rng(0).uniform(-0.5, 0.5, held[-1] + 1)[held] * step
+    place = np.searchsorted(recording.command.time, inputs.time, side="right") - 1
+    command = inputs.command + np.where(place < 0, 0.0, off[np.maximum(place, 0)])
+    return replace(inputs, command=np.clip(command, -1.0, 1.0) if recording.input == "duty" else command)
 
 
 def unnamed(found: Found) -> Remainder:

@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.remainder.around import supported_around
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
@@ -60,7 +61,7 @@ def remainder(
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := _named(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -75,10 +76,10 @@ def remainder(
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
 
 
-def _named(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What may be named beside what remains."""
-    beside = found.beside or supported(found.data, found.nominal, pool, progress)
-    return beside.named
+def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+    """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
+    around = supported_around(found.data, found.nominal, found.recalibrated)
+    return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
 def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:

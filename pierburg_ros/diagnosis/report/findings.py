@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators.gauge import in_ratio
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.evidence import quality
 from pierburg_ros.diagnosis.evidence.motion import motion_of
@@ -150,9 +151,15 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
-            indistinguishable_from=ties_of(conclusion, name) if drifted else [],
+            indistinguishable_from=[*ties_of(conclusion, name), *_in_ratio(actuator, name)] if drifted else [],
         )
     return result
+
+
+def _in_ratio(actuator: Actuator, name: str) -> list[list[str]]:
+    """What is fixed, and might as well have drifted in the place of a parameter."""
+    fixed = in_ratio(actuator, name)
+    return [list(fixed)] if fixed else []
 
 
 def changes(chosen: Fit) -> list[Change]:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
-from pierburg_ros.diagnosis.evidence.turn import with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.scored import Scored, scored, settled
@@ -98,7 +97,6 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) ->
     those that do not carry enough are taken away again, the weakest first. It ends where one more addition helps no
     further one, or too little is left for it.
     """
-    nominal = with_lesser_orders(data, nominal)
     named: Supported | None = None
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     begun = reached.left

@@ -21,6 +21,12 @@ def sensed(p, s):
 
 
 @kernel
+def lead(p):
+    """Time [s] by which a shaft that moves evenly is ahead of what its sensor shows; none where that is a velocity."""
+    return 0.0 if p.sensor == SPEED else p.sensor_lag.time_constant
+
+
+@kernel
 def follow(p, s, duration):
     """Let the moving parts of the sensor follow the shaft, which has gone one way for `duration` [s]."""
     true = sensed(p, s)
@@ -39,7 +45,25 @@ def follow(p, s, duration):
 @kernel
 def measured(p, s):
     """Measured quantity before noise and converter: Hall voltage [V], angle [rad] or velocity [rad/s]."""
-    shown = s.sensor_lag.lagged if p.sensor_moves else sensed(p, s)
+    return read(p, shown(p, s))
+
+
+@kernel
+def shown(p, s):
+    """Angle [rad] or velocity [rad/s] at which the sensor's moving parts stand."""
+    return s.sensor_lag.lagged if p.sensor_moves else sensed(p, s)
+
+
+@kernel
+def read_all(p, values):
+    """Turn each of the `values` shown [rad or rad/s] into what is measured, as the converter gives it."""
+    for index in range(values.size):
+        values[index] = quantised(p, read(p, values[index]))
+
+
+@kernel
+def read(p, shown):
+    """Measured quantity before noise and converter of a value `shown` [rad or rad/s]."""
     if p.sensor == SPEED:
         return p.sensor_scale * shown + p.sensor_offset
     fraction = sensor_nonlinearity.bent(p.sensor_nonlinearity, shown / p.sensor_span)

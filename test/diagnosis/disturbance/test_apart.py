@@ -44,12 +44,12 @@ def test_seconds_of_an_open_bridge_are_left_out():
     given = driven(enabled=(time < 9.0) | (time >= 12.0))
     data, estimator, fit = fitted_to(given)
     assert fit.ratio > 10.0
-    apart = without_stretch(data, estimator, fit, given)
-    (omission,) = apart.data.left_out
+    rest = without_stretch(data, estimator, fit, given)
+    (omission,) = rest.left_out
     start, end = omission.span
     assert omission.why == NOTHING and 8.0 < start < 9.5 and 11.5 < end < 14.5
-    assert Estimator(apart.data, NOMINAL).at(Explanation()).ratio < EXPLAINED
-    assert len(apart.data.runs) == 2 and not any(np.any((r.time > start) & (r.time < end)) for r in apart.data.runs)
+    assert Estimator(rest, NOMINAL).at(Explanation()).ratio < EXPLAINED
+    assert len(rest.runs) == 2 and not any(np.any((r.time > start) & (r.time < end)) for r in rest.runs)
 
 
 @pytest.mark.parametrize(
@@ -118,5 +118,5 @@ def test_a_course_is_smooth_between_its_knots_and_still_beyond():
 def test_only_a_supply_that_was_not_recorded_may_have_wandered():
     data = data_on(ONE)
     logged = replace(ONE, supply_voltage=Channel(ONE.time[:1], np.array([13.5])))
-    assert [type(each) for each in slow_quantities(ONE, data, NOMINAL)] == [Supply, Zero]
+    assert [type(each) for each in slow_quantities(ONE, data, NOMINAL)] == [Zero, Supply]
     assert [type(each) for each in slow_quantities(logged, data, NOMINAL)] == [Zero]

@@ -12,11 +12,13 @@ from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
 MENTIONED = 4
 """How many orders are told in words. Chosen: a sentence holds no more; the map holds all."""
+LEAST = 0.01
+"""Share of the strongest order from which another is told. Chosen: less is not seen beside it."""
 
 
 def has_overtones(data: Data, nominal: Model) -> bool:
     """Whether more than one order of a torque over a turn is seen: more than one effect could be named for."""
-    found = _repeated(data, nominal)
+    found = repeated(data, nominal)
     return found is not None and found.orders.size > 1
 
 
@@ -25,25 +27,26 @@ def with_lesser_orders(data: Data, nominal: Model) -> Model:
 
     A ripple has overtones. A sine alone leaves so much of them that little is seen beside it.
     """
-    found = _repeated(data, nominal)
+    found = repeated(data, nominal)
     return nominal if found is None else _with(nominal, found.lesser)
 
 
 def with_turn(data: Data, base: Model) -> Model | None:
     """`base` with what its effects leave of the torque over a turn; None where no shaft goes round."""
-    found = _repeated(data, base)
+    found = repeated(data, base)
     return None if found is None else _with(base, found)
 
 
 def described_turn(torque: Signal, unit: str) -> str:
     """The strongest orders of a `torque` over a turn, shape (angles, 1), in words."""
     amplitude = 2.0 * np.abs(np.fft.rfft(torque[:-1, 0])) / (torque.shape[0] - 1)
-    strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > 0.0]
+    least = LEAST * float(np.max(amplitude))
+    strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > least]
     orders = ", ".join(f"{amplitude[order]:#.2g} {unit} {order} times" for order in strongest)
     return f"it repeats itself with every turn, with {orders}"
 
 
-def _repeated(data: Data, model: Model) -> Balance | None:
+def repeated(data: Data, model: Model) -> Balance | None:
     """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
 
     Of several runs that one tells it in which the most is seen.
