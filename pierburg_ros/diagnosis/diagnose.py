@@ -12,9 +12,9 @@ from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.disturbance.apart import apart
 from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
-from pierburg_ros.diagnosis.evidence.turn import has_overtones
 from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
+from pierburg_ros.diagnosis.remainder.turn import has_overtones
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pierburg_ros.diagnosis.evidence.turn import repeated, with_lesser_orders
+from pierburg_ros.diagnosis.remainder.turn import repeated, with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.supported import Supported, Weight

@@ -61,7 +61,7 @@ def remainder(
             fit, left_out = shared_effects(found, pool, progress)
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := _named(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -76,13 +76,10 @@ def remainder(
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
 
 
-def _named(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What may be named beside what remains: what repeats itself with every turn, or what carries most evidence."""
+def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+    """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
     around = supported_around(found.data, found.nominal, found.recalibrated)
-    if around:
-        return around
-    beside = found.beside or supported(found.data, found.nominal, pool, progress)
-    return beside.named
+    return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
 def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:

@@ -15,7 +15,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
-from pierburg_ros.diagnosis.evidence.turn import described_turn, with_turn
+from pierburg_ros.diagnosis.remainder.turn import described_turn, with_turn
 from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
 from pierburg_ros.estimation.least_squares import BRIEF, minimise
