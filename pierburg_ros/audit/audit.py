@@ -85,11 +85,8 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
     if found:
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
     moves = given is not None and given.share >= ENOUGH
-    return (
-        None
-        if moves and (given.agreement >= ENOUGH or in_balance(signals, nominal))
-        else unrelated(signals, given, nominal)
-    )
+    agrees = given is not None and given.agreement >= ENOUGH
+    return None if moves and (agrees or in_balance(signals, nominal)) else unrelated(signals, given, nominal)
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:

@@ -15,6 +15,7 @@ from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.estimation.least_squares import FULL, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
+from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
@@ -69,12 +70,21 @@ class Estimator:
     """Fits explanations by one nominal model to the training samples of some recordings.
 
     `over` maps a function over the columns of a Jacobian: on several cores where a fit has them to itself. With a
-    `discrepancy` residuals count by what it does not predict from the samples before: their innovations.
+    `discrepancy` residuals count by what it does not predict from the samples before: their innovations. With a `unit`
+    [noise] they count in that, and beside them by how far values lie from what is plausible (`prior.py`).
     """
 
-    def __init__(self, data: Data, nominal: Model, over: Map = map, discrepancy: Discrepancy | None = None) -> None:
+    def __init__(
+        self,
+        data: Data,
+        nominal: Model,
+        over: Map = map,
+        discrepancy: Discrepancy | None = None,
+        unit: float | None = None,
+    ) -> None:
         self.data = data
         self.discrepancy = discrepancy
+        self.unit = unit
         self.over = over
         self.nominal = nominal
         self._train = data.train
@@ -138,8 +148,11 @@ class Estimator:
         return self.at(fit.explanation, fit.values)
 
     def residual_at(self, explanation: Explanation, coordinates: Coordinates, point: Signal) -> Signal:
-        """Training residual at a point of the search, in units of the noise."""
-        return self.residual(*self.models(explanation, coordinates.values(point)))
+        """Training residual at a point of the search, in units of the noise; with a `unit` in that, then the prior."""
+        residual = self.residual(*self.models(explanation, coordinates.values(point)))
+        if self.unit is None:
+            return residual
+        return np.concatenate([residual / self.unit, improbability(coordinates, point)])
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which an explanation is searched."""

@@ -53,7 +53,8 @@ controller whose current is recorded behind one it is a quarter to a third (n = 
 class Balance:
     """What makes up the motor torque: `lag` [s] of its record, and over a turn `cosines` and `sines` [N.m] by `orders`.
 
-    `friction` [N.m] is what resists the movement on average, `left` the root mean square [N.m] of what nothing makes up.
+    `friction` [N.m] is what resists the movement on average, `left` the root mean square [N.m] of what nothing makes
+    up.
     """
 
     lag: float

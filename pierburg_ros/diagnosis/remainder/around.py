@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from pierburg_ros.diagnosis.remainder.scored import scored
-from pierburg_ros.diagnosis.remainder.supported import Supported, Weight
 from pierburg_ros.diagnosis.remainder.turn import repeated, with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
+from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.diagnosis.search.supported import Supported, Weight
 from pierburg_ros.effects import Effect
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -18,8 +18,8 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 BETTER = 0.9
-"""Share of the error of the recalibrated model on samples that validate, to which a named effect with its overtones must
-bring it. Given: a name only where unseen data improve by a tenth."""
+"""Share of the error of the recalibrated model on samples that validate, to which a named effect with its overtones
+must bring it. Given: a name only where unseen data improve by a tenth."""
 
 
 def supported_around(data: Data, nominal: Model, recalibrated: Fit) -> Supported | None:

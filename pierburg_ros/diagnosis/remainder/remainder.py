@@ -11,8 +11,8 @@ from pierburg_ros.diagnosis.remainder.around import supported_around
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
-from pierburg_ros.diagnosis.remainder.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -79,7 +79,7 @@ def remainder(
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
     """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
     around = supported_around(found.data, found.nominal, found.recalibrated)
-    return around or supported(found.data, found.nominal, pool, progress)
+    return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
 def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:

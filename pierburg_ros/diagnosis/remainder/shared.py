@@ -1,13 +1,14 @@
 """Physics that several recordings share, where no explanation accounts for all: chosen on recordings left out.
 
 A real actuator lacks more than one thing, and with a low noise floor nothing is ever adequate. An effect is
-then believed if, fitted on the other recordings, it lowers the error on the recordings left out.
+then believed if, fitted on the other recordings, it lowers the error on the recordings left out. What remains counts
+by its independent stretches, not by its samples, so that what is known of the values beforehand has its say.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
@@ -18,12 +19,16 @@ from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.diagnosis.search.race import ROUNDS
+from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
+from pierburg_ros.estimation.likelihood import repetition
+from pierburg_ros.estimation.prior import improbability
+from pierburg_ros.plant import Model
 
 FOLDS = 4
 """Parts into which the recordings are divided, each left out in turn. Work: every effect looked at is fitted once more
@@ -31,9 +36,8 @@ for each part; not varied."""
 TRIED = 6
 """Candidates of each round that are held against recordings left out. Work: each costs `FOLDS` brief descents; not
 varied."""
-WORTH = 0.85
-"""An effect must bring the error on recordings left out below this share of what it was. Chosen: more than the tenth
-by which errors differ anyway; not varied. The one test is a servo's n = 8 runs."""
+SETTLING = 3
+"""How often a fit is carried on, each time against what the one before left. Work: each is a whole fit; not varied."""
 MOST = 5
 """Most effects that recordings left out may confirm. Work: splits of real runs (n = 4) ended at three or fewer."""
 
@@ -42,14 +46,15 @@ MOST = 5
 class LeftOut:
     """What recordings left out of the fit say of an effect.
 
-    Their root-mean-square error [measured unit] `without` it and `beside` the others with it, and in how many of the
-    `parts` it `helped`.
+    Their error [measured unit], the geometric mean of root mean squares, `without` it and `beside` the others with it,
+    in how many of the `parts` it `helped`, and the names of the recordings in these.
     """
 
     without: float
     beside: float
     helped: int
     parts: int
+    recordings: tuple[str, ...] = ()
 
 
 Folds = list[tuple[Data, Data]]
@@ -61,35 +66,43 @@ def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fi
 
     They are added one by one.
 
-    The parameters are fitted again from the recalibrated ones and from their nominal values: what blocks do not tell
-    apart may have led them astray.
+    The parameters that recordings tell apart are fitted beside them, from their nominal values and from the
+    recalibrated ones, as far as what remains speaks against what was known of them.
     """
-    data = all_training(found.data)
-    estimator, folds = Estimator(data, found.nominal), _folds(data)
-    settled = (
-        _settled(estimator, start) for start in (found.recalibrated, estimator.fit(found.recalibrated.explanation))
-    )
-    chosen = min(settled, key=lambda fit: fit.chi2)
-    error = rms(_errors(estimator, folds, chosen))
+    data, nominal, recalibrated = all_training(found.data), found.nominal, found.recalibrated
+    folds, starts = _folds(data), (nominal.values, recalibrated.values)
+    settled = (_settled(data, nominal, recalibrated.explanation, start) for start in starts)
+    chosen = min(settled, key=lambda fit: fit.ratio)
+    parts = _parts(nominal, folds, chosen)
     while len(chosen.explanation.variants) < MOST:
         tasks = _tasks(found, data, chosen)
-        seen = pool.map(_brief_fit, itertools.repeat(estimator), itertools.repeat(chosen), tasks)
-        fits = sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:TRIED]
-        left_out = pool.map(_errors, itertools.repeat(estimator), itertools.repeat(folds), fits)
-        best, fit = min(zip(map(rms, left_out), fits, strict=True), key=lambda pair: pair[0])
-        progress(fit.explanation.label)
-        if best > WORTH * error:
+        fits = _grown(data, nominal, chosen, tasks, pool)
+        left_out = pool.map(lambda fit: _parts(nominal, folds, fit), fits)
+        gains = [_gain(parts, each) for each in left_out]
+        best = int(np.argmax(gains))
+        progress(fits[best].explanation.label)
+        if gains[best] <= _by_chance(len(tasks)):
             break
-        error, chosen = best, _settled(estimator, fit)
-    beside = _errors(estimator, folds, chosen)
+        chosen = _settled(data, nominal, fits[best].explanation, fits[best].values)
+        parts = _parts(nominal, folds, chosen)
     variants = chosen.explanation.variants
-    said = pool.map(lambda lost: _left_out(estimator, folds, chosen, lost, beside), variants)
+    said = pool.map(lambda lost: _left_out(data, nominal, folds, chosen, lost, parts), variants)
     return chosen, dict(zip(chosen.explanation.effects, said, strict=True))
 
 
-def _settled(estimator: Estimator, fit: Fit) -> Fit:
-    """The fit carried on until it is at rest: twice, since its damping starts afresh."""
-    return estimator.fit(fit.explanation, estimator.fit(fit.explanation, fit.values).values)
+def _believing(data: Data, nominal: Model, residual: Signal) -> Estimator:
+    """What counts a residual like this [noise] as its independent stretches, beside what is known of the values."""
+    size = max(rms(residual), 1.0)
+    return Estimator(data, nominal, unit=size * math.sqrt(repetition(residual)))
+
+
+def _settled(data: Data, nominal: Model, explanation: Explanation, start: Mapping[str, float]) -> Fit:
+    """The fit carried on until what it leaves is what it is counted against; its residual in noises."""
+    plain = Estimator(data, nominal)
+    fit = plain.at(explanation, start)
+    for _ in range(SETTLING):
+        fit = plain.restated(_believing(data, nominal, fit.solution.residual).fit(explanation, fit.values))
+    return fit
 
 
 def _folds(data: Data) -> Folds:
@@ -102,6 +115,20 @@ def _folds(data: Data) -> Folds:
     return pairs
 
 
+def _by_chance(candidates: int) -> float:
+    """What the best of so many candidates gains in -2 log likelihood if none of them acts: about the largest of as many
+    squares of normal variables."""
+    return 2.0 * math.log(candidates)
+
+
+def _grown(
+    data: Data, nominal: Model, chosen: Fit, tasks: Sequence[tuple[Explanation, Sequence[Start]]], pool: Executor
+) -> list[Fit]:
+    """First fits with one more effect, the best of all that may be added."""
+    seen = pool.map(lambda task: _brief_fit(data, nominal, chosen, task), tasks)
+    return sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:TRIED]
+
+
 def _tasks(found: Found, data: Data, chosen: Fit) -> list[tuple[Explanation, Sequence[Start]]]:
     """What may be added, with its starts: effects that belong to one recording's time cannot be shared."""
     grown = ((chosen.explanation.plus(variant), starts) for variant, starts in starts_of(data, chosen.model).items())
@@ -112,24 +139,61 @@ def _tasks(found: Found, data: Data, chosen: Fit) -> list[tuple[Explanation, Seq
     ]
 
 
-def _brief_fit(estimator: Estimator, chosen: Fit, task: tuple[Explanation, Sequence[Start]]) -> Fit | None:
+def _brief_fit(data: Data, nominal: Model, chosen: Fit, task: tuple[Explanation, Sequence[Start]]) -> Fit | None:
+    """The best of the first fits of what may be added, from the starts that a linear step promises most."""
     grown, starts = task
-    best = promised(estimator, chosen, grown.variants[-1], starts)[:2]
-    fits = [estimator.fit(grown, {**chosen.values, **start}, ROUNDS) for _, start in best]
+    best = promised(Estimator(data, nominal), chosen, grown.variants[-1], starts)[:STARTS_TRIED]
+    believing = _believing(data, nominal, chosen.solution.residual)
+    fits = [believing.fit(grown, {**chosen.values, **start}, ROUNDS) for _, start in best]
     return min(fits, key=lambda fit: fit.chi2) if fits else None
 
 
-def _errors(estimator: Estimator, folds: Folds, fit: Fit) -> Signal:
-    """RMSE of each part of the recordings, simulated by a fit to the others, measured unit, shape (parts,)."""
-    errors = []
+@dataclass(frozen=True)
+class _Parts:
+    """What a fit leaves of each part when it is fitted to the others: RMSE [noise] and independent stretches, shape
+    (parts,); and how improbable its values are, in -2 log probability."""
+
+    errors: Signal
+    stretches: Signal
+    improbable: float
+
+    @property
+    def mean(self) -> float:
+        """Geometric mean of the errors: a part whose error is large in any case does not decide alone."""
+        return float(np.exp(np.mean(np.log(self.errors))))
+
+
+def _parts(nominal: Model, folds: Folds, fit: Fit) -> _Parts:
+    errors, stretches = [], []
     for fitted, left in folds:
-        own = Estimator(fitted, estimator.nominal).fit(fit.explanation, fit.values, ROUNDS)
-        errors.append(rms(left.residual(own.model)) * estimator.data.noise)
-    return np.array(errors)
+        believing = _believing(fitted, nominal, fitted.residual(fit.model))
+        residual = left.residual(believing.fit(fit.explanation, fit.values, ROUNDS).model)
+        errors.append(rms(residual))
+        stretches.append(residual.size / repetition(residual))
+    coordinates = Estimator(folds[0][0], nominal).coordinates(fit.explanation)
+    rows = improbability(coordinates, coordinates.point(fit.values))
+    return _Parts(np.array(errors), np.array(stretches), float(rows @ rows))
 
 
-def _left_out(estimator: Estimator, folds: Folds, chosen: Fit, variant: Variant, beside: Signal) -> LeftOut:
-    """What the parts left out say of an effect; `beside` are their errors with all effects."""
-    bare = _settled(estimator, replace(chosen, explanation=without(chosen.explanation, variant)))
-    lacking = _errors(estimator, folds, bare)
-    return LeftOut(rms(lacking), rms(beside), int(np.sum(beside < lacking)), len(folds))
+def _gain(smaller: _Parts, larger: _Parts) -> float:
+    """What the parts left out and the prior say for the larger explanation, in -2 log likelihood.
+
+    Each stretch that says something new counts as one sample of a normal variable whose size is not known.
+    """
+    told = larger.stretches @ np.log(smaller.errors / larger.errors)
+    return float(2.0 * told + smaller.improbable - larger.improbable)
+
+
+def _left_out(data: Data, nominal: Model, folds: Folds, chosen: Fit, variant: Variant, beside: _Parts) -> LeftOut:
+    """What the parts left out say of an effect; `beside` are they with all effects."""
+    bare = _settled(data, nominal, without(chosen.explanation, variant), chosen.values)
+    lacking = _parts(nominal, folds, bare)
+    helped = beside.errors < lacking.errors
+    recordings = tuple(name for (_, left), helps in zip(folds, helped, strict=True) if helps for name in _names(left))
+    without_it, with_it = lacking.mean * data.noise, beside.mean * data.noise
+    return LeftOut(without_it, with_it, int(np.sum(helped)), len(folds), recordings)
+
+
+def _names(data: Data) -> list[str]:
+    """Names of the recordings."""
+    return list({run.number: run.name for run in data.runs}.values())

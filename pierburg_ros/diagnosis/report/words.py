@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
-from pierburg_ros.diagnosis.remainder.supported import Weight
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
+from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
@@ -84,10 +84,14 @@ def by_grid() -> str:
 
 
 def by_recordings_left_out(said: LeftOut, unit: str) -> str:
-    """Why an effect is named where no explanation accounts for all."""
+    """Why an effect is named where no explanation accounts for all, and which recordings share it."""
+    shared = said.helped == said.parts
+    on = f", on {', '.join(said.recordings)}" if said.recordings else ""
+    some = f"it helps in {said.helped} of {said.parts} parts{on}"
+    where = "all recordings share it" if shared else some
     return (
         f"On recordings left out of the fit the error is {said.without:.3g} {unit} without it and {said.beside:.3g} "
-        f"{unit} with it; it helps in {said.helped} of {said.parts} parts. Other physics may stand behind it."
+        f"{unit} with it; {where}. Other physics may stand behind it."
     )
 
 
@@ -114,7 +118,11 @@ def summary(
         f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
         f"the noise is {floor:.2g} {unit}."
     )
-    drifts = [quantity(name, p) + f" instead of {p.nominal:.4g}" for name, p in parameters.items() if p.drifted]
+    drifts = [
+        quantity(name, p) + f" instead of {p.nominal:.4g}" + _or(p.indistinguishable_from)
+        for name, p in parameters.items()
+        if p.drifted
+    ]
     dated = [
         f"{c.parameter.replace('_', ' ')} changes at {c.time:.3g} s from {c.before:.4g} to {c.after:.4g}"
         for c in changes
@@ -125,9 +133,9 @@ def summary(
         return f"No physics is missing: {'; '.join(dated or drifts)}. {errors}"
     named = " ".join(EFFECT[effect.id].sentence for effect in effects)
     also = f" Besides: {'; '.join(drifts)}." if drifts else ""
+    listed = ", and ".join(numbers.words(effect.id) + _or(effect.indistinguishable_from) for effect in effects)
     if verdict == "missing_physics":
-        return f"The model lacks {_listed([effect.id for effect in effects])}. {named}{also} {errors}"
-    listed = _listed([effect.id for effect in effects])
+        return f"The model lacks {listed}. {named}{also} {errors}"
     helped = f" What the recordings support all the same is {listed}. {named}{also}" if effects else ""
     left = "so far" if stopped else "that no effect of the catalogue removes"
     return f"Something is left {left}.{helped} {errors}"
@@ -204,6 +212,12 @@ def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
     means += [EFFECT[item].record for item in (name, *tie) if item in EFFECT]
     text = f"To tell {numbers.words(name)} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means)) or HELD}."
     return f"{text} {HOLD}" if "measure" in text else text
+
+
+def _or(ties: Sequence[Sequence[str]]) -> str:
+    """What a quantity is not told from, to follow its name; nothing where there is none."""
+    said = [f"{_listed(tie)}{' together' if len(tie) > 1 else ''}" for tie in ties]
+    return "".join(f", or {each}" for each in said) + (", which fit alike" if said else "")
 
 
 def _either(ties: Sequence[Sequence[str]]) -> str:

@@ -15,6 +15,7 @@ from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import overlooks
+from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -39,7 +40,8 @@ class Found:
 
     `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
     name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
-    because its budget of candidates was spent.
+    because its budget of candidates was spent. `beside` is what the recordings say counted against what remains, None
+    where it has not come to that.
     """
 
     data: Data
@@ -51,6 +53,7 @@ class Found:
     estimates: dict[str, Estimate]
     recalibrated: Fit
     exhausted: bool
+    beside: Beside | None = None
 
     def of_size(self, size: int) -> list[Fit]:
         """The fits of explanations of `size` quantities."""
@@ -73,9 +76,11 @@ def search(
     """Search what `nominal` lacks in `data`, `jobs` fits at a time.
 
     Where an effect shows only in samples that validate, the search is made again with these training as well. At the
-    `deadline`, or after Ctrl-C, what has been found by then is taken.
+    `deadline`, or after Ctrl-C, what has been found by then is taken; without one all is tried, however little it
+    promises.
     """
     deadline = deadline or Deadline()
+    beam = beam or Beam(resigns=not math.isinf(deadline.left))
     growing = deadline.part(GROWING)
     begun = list[Search]()
     tell = _checked(progress, growing, begun)
@@ -89,7 +94,9 @@ def search(
     if chosen.ratio <= EXPLAINED:
         final, known = deadline.attempt(lambda: _last_values(found, chosen, jobs, deadline), (final, known))
     fits = dict(found.fits)
-    return Found(found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted)
+    return Found(
+        found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted, found.beside
+    )
 
 
 def _grown(
@@ -108,7 +115,8 @@ def _grown(
         if overlooks(found.run(), found.whole):
             found = Search(with_validation(data), nominal, pool, progress, beam)
             found.run()
-        fit_rivals(found, found.preferred())
+        if not found.resigned:
+            fit_rivals(found, found.preferred())
     return found
 
 

@@ -13,6 +13,7 @@ from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
+from pierburg_ros.diagnosis.search.supported import Beside, supported
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -39,13 +40,15 @@ class Beam:
 
     Up to `width` explanations of one size are grown further, besides every single drift, and explanations have up to
     `depth` quantities. Of all additions to them, the `ahead` most promising are fitted before the others. Once
-    `budget` candidates have been fitted, explanations no longer grow.
+    `budget` candidates have been fitted, explanations no longer grow. Where these leave something, and so does what is
+    likeliest beside a remainder, a search that `resigns` fits no others.
     """
 
     width: int = 3
     depth: int = 3
     ahead: int = 24
     budget: int = 1500
+    resigns: bool = False
 
 
 class Search:
@@ -65,6 +68,8 @@ class Search:
         self.expanded: set[Explanation] = set()
         self.tried = self.waiting = 0
         self.pool = pool
+        self.beside: Beside | None = None
+        self.resigned = False
 
     def run(self) -> Fit:
         """Grow explanations until the best leaves nothing or cannot be bettered; gives that best one.
@@ -97,12 +102,15 @@ class Search:
             self._fit_most_promising(seeds)
             if self._complete(size + 1):
                 return
-            self.refine(self.of_size(size))
+            if not self.resigned:
+                self.refine(self.of_size(size))
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
             seeds = self._seeds(best)
             self._fit_ripples(seeds)
+            if not self._complete(size + 1) and self._remains():
+                return
         for seed in seeds:
             if self._complete(size + 1) or self.exhausted:
                 return
@@ -138,6 +146,23 @@ class Search:
         """Fit what linear steps promise most on any of the `seeds`: often one of them accounts for all."""
         candidates = [candidate for seed in seeds for candidate in self._screened(seed)]
         self._race(most_promising(candidates, self.beam.ahead), most=self.beam.ahead // 3)
+
+    def _remains(self) -> bool:
+        """Whether something is left by what is likeliest beside a remainder, or all is accounted for: nothing to grow.
+
+        What is likeliest beside a remainder is fitted as if there were none: often it then accounts for all.
+        """
+        if self.beside is not None:
+            return self.resigned
+        self.beside = supported(self.data, self.nominal, self.pool, self.progress)
+        reached = self.beside.reached.fit
+        if reached.explanation.size <= self.beam.depth:
+            fit = self.add(reached.explanation, reached.values)
+            self.refine([fit])
+            if adequate(self.fits[reached.explanation]):
+                return True
+        self.resigned = self.beam.resigns and not self.beside.open
+        return self.resigned
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""

@@ -4,9 +4,9 @@ import pytest
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.shared import LeftOut
-from pierburg_ros.diagnosis.remainder.supported import Weight
-from pierburg_ros.diagnosis.report.words import advice, cautioned, reason
-from pierburg_ros.diagnosis.schema import BaseParameter, Effect, NotTestable
+from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
+from pierburg_ros.diagnosis.schema import BaseParameter, Effect, Errors, FitQuality, NotTestable
+from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 
 TIED = Effect(
@@ -23,13 +23,29 @@ TIED = Effect(
     [
         (Support(0.99, gain=812.34), "leaves 812 more in chi-squared"),
         (Support(1.0), "All samples lie on this grid"),
-        (Support(0.8, left_out=LeftOut(0.0213, 0.0104, 3, 4)), "0.0104 V with it; it helps in 3 of 4"),
+        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
+        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
     ],
-    ids=["evidence", "grid", "recordings left out", "beside what remains"],
+    ids=["evidence", "grid", "some recordings", "all recordings", "beside what remains"],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
+
+
+def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -> None:
+    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.01, final_rmse=0.004)
+    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
+    said = summary("missing_physics", [TIED], {}, [], fit, "V")
+    assert said.startswith(
+        "The model lacks viscous friction, or armature resistance and torque constant together, which fit alike. "
+    )
+    spring = BaseParameter(
+        nominal=0.1, value=0.2, unit="N.m", ci95=None, identifiable=True, drifted=True,
+        indistinguishable_from=[["coulomb_friction"]],
+    )  # fmt: skip
+    said = summary("parameter_drift", [], {"spring_preload": spring}, [], fit, "V")
+    assert "instead of 0.1, or coulomb friction, which fit alike. " in said
 
 
 def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:

@@ -10,9 +10,12 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search import search as module
 from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import TIED
+from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.discrepancy import Discrepancy
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
@@ -94,6 +97,9 @@ class Grown(Search):
     def _fit_ripples(self, seeds: object) -> None:
         pass
 
+    def _remains(self) -> bool:
+        return self.beam.resigns
+
 
 ONES = [
     Explanation((), (Variant(effect, ("x",)),)) for effect in ("sensor_lag", "supply_sag", "pwm_deadband", "backlash")
@@ -123,6 +129,29 @@ def test_a_budget_ends_the_growth_within_a_size(short: Data, pool: Executor) -> 
     found.run()
     assert found.exhausted
     assert found.seeds == [NOTHING, ONES[0]]
+
+
+def test_a_search_that_resigns_grows_nothing_in_turn(short: Data, pool: Executor) -> None:
+    found = Grown(short, pool, RATIOS, Beam(resigns=True))
+    found.run()
+    assert found.seeds == [NOTHING]
+
+
+@pytest.mark.parametrize(
+    ("left", "beside", "resigned"), [(5000.0, 3.0, True), (100.0, 3.0, False), (5000.0, 1.0, False)]
+)
+def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, left: float, beside: float, resigned: bool
+) -> None:
+    """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted as if nothing were, leaves `beside`."""
+    reached = made_up(ONES[0], 1.0, NOMINAL)
+    scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
+    monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, None))
+    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, beside, NOMINAL)))
+    monkeypatch.setattr(empty, "refine", lambda _: None)
+    empty.beam = Beam(resigns=True)
+    assert empty._remains() == (resigned or beside == 1.0)
+    assert empty.resigned == resigned
 
 
 def test_what_accounts_for_all_is_not_grown(short: Data, pool: Executor) -> None:

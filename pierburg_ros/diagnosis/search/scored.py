@@ -19,6 +19,11 @@ class Scored:
     discrepancy: Discrepancy
     cost: float
 
+    @property
+    def left(self) -> float:
+        """How much less likely the residual is than white noise of the sensor's size, in -2 log likelihood."""
+        return self.cost - self.fit.solution.residual.size
+
 
 def scored(data: Data, fit: Fit) -> Scored:
     """`fit` as it is, with its most likely discrepancy."""

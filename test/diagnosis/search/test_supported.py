@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.supported import CARRIED, Supported, Weight, supported
+from pierburg_ros.diagnosis.search.supported import CARRIED, Supported, Weight, supported
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
@@ -23,7 +23,7 @@ def disturbed(changes: dict[str, float], seed: int) -> Recording:
 
 def found_in(changes: dict[str, float], seed: int = 0) -> Supported | None:
     with workers(1) as pool:
-        return supported(data_on(disturbed(changes, seed)), NOMINAL, pool, lambda _: None)
+        return supported(data_on(disturbed(changes, seed)), NOMINAL, pool, lambda _: None).named
 
 
 def test_an_effect_is_named_beside_what_no_effect_makes():
