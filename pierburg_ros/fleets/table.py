@@ -53,7 +53,7 @@ COLUMNS: dict[str, dict[str, tuple[str, str]]] = {
             "string",
             "parameter, effect or ruled_out: what the diagnosis says; measured: what the fleet's model fits",
         ),
-        "quantity": ("string", "name as in armature_resistance or backlash.gap"),
+        "quantity": ("string", "armature_resistance, or effect.parameter"),
         "value": ("double", "in in_unit; null where only a limit is known"),
         "low": ("double", "lower end of the 95 % interval, or what is excluded below, in in_unit"),
         "high": ("double", "upper end of the 95 % interval, or what is excluded above, in in_unit"),
