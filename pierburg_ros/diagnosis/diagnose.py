@@ -83,13 +83,13 @@ def examined(
 ) -> tuple[Found, Remainder | None]:
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-    beam = Beam(depth=0) if has_overtones(data, nominal) else None
-    found, single = search(data, nominal, progress, jobs, beam, deadline), len(recordings) == 1
+    turning, single = has_overtones(data, nominal), len(recordings) == 1
+    found = search(data, nominal, progress, jobs, Beam(depth=0) if turning else None, deadline)
     if verdict_on(found.chosen) != "unexplained":
         return found, None
     if single and (doubt := rounded(found, recordings[0])):
         return replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
-    if single:
+    if single and not turning:
         tell = staged(progress, "disturbances")
         found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
         if verdict_on(found.chosen) != "unexplained":
