@@ -26,7 +26,7 @@ BESIDE = 4
 simulations; the right one of plain effects was among the first two."""
 CONFIRMED = 1.5
 """Error over noise that a wander may leave on samples that validate. Chosen: the true one left 1.01, 1.01 and, where a
-slip comes at another moment, 1.23; others, and those beside which physics was missing, 3.9 or more (n = 11)."""
+slip comes at another moment, 1.23; others, and those beside which physics was missing, 3.9 or more (about eleven)."""
 NOTHING = "nothing that acts elsewhere explains this stretch"
 """Why a stretch is left out."""
 

@@ -16,7 +16,7 @@ from pierburg_ros.estimation.least_squares import BRIEF, FULL, minimise
 
 BEGUN = 12
 """Iterations after which a fit is given up that leaves too much. Work: half of a whole fit; with six a true wander was
-given up in n = 1 of 5; not varied otherwise."""
+once given up; not varied otherwise."""
 HOPE = 4.0
 """Mean square of forgiven residuals up to which it goes on. Work: at its end it is 0.9; those that came there had less
 after so many iterations."""
