@@ -4,7 +4,7 @@ import pytest
 
 from pierburg_ros.cli.app import main
 from pierburg_ros.cli.fleet import limits_of
-from pierburg_ros.cli.tune import tuned_there
+from pierburg_ros.cli.tune import Effort, tuned_there
 from pierburg_ros.closed_loop.goal import Goal
 from pierburg_ros.errors import InputError
 
@@ -37,5 +37,5 @@ def test_what_cannot_be_begun_is_one_line(tmp_path, monkeypatch, capsys, argumen
 
 
 def test_a_worker_needs_no_more_than_the_name_of_a_controller():
-    judged = tuned_there("PI", Goal(), generations=0, members=4, seed=1)
+    judged = tuned_there("PI", Goal(), Effort(generations=0, members=4, seed=1, jobs=1))
     assert judged.name == "PI" and set(judged.responses) == set(judged.plants)

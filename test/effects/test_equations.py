@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference.cases import CASES, Case
-from reference.event_driven import Valve, trajectory
-from reference.excitation import rich_duty
+from independent.cases import CASES, Case
+from independent.event_driven import Valve, trajectory
+from independent.excitation import rich_duty
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate

@@ -49,6 +49,7 @@ class Known(Estimator):
         self.given = given
         self.data = Data(NOMINAL.actuator, (), noise=1.0)
         self.over = map
+        self.unit = None
 
     def coordinates(self, explanation: Explanation) -> Plane:  # type: ignore[override]
         return Plane()

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from reference.event_driven import COULOMB, SUPPLY, Valve, spring, trajectory
-from reference.excitation import rich_duty
+from independent.event_driven import COULOMB, SUPPLY, Valve, spring, trajectory
+from independent.excitation import rich_duty
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.effects import EFFECTS

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from reference.event_driven import COULOMB, Valve, trajectory
+from independent.event_driven import COULOMB, Valve, trajectory
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate

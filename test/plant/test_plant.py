@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from reference.excitation import rich_duty
+from independent.excitation import rich_duty
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, Plant, simulate, simulate_switched

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference.excitation import rich_duty
+from independent.excitation import rich_duty
 
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.effects import EFFECT, EFFECTS

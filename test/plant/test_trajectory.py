@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from reference.excitation import rich_duty
+from independent.excitation import rich_duty
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate

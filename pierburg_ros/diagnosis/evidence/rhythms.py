@@ -24,12 +24,12 @@ spectrum is there without a rhythm to 15 %; not varied."""
 
 
 def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: int) -> list[float]:
-    """The frequencies [1 / unit of place] of `torque` at uneven `place` that stand out most, first, at most `most`.
+    """The strongest and the clearest frequencies [1 / unit of place] of `torque` at uneven `place`, at most `most`.
 
     They lie `between` two, above one period over the whole place and below what the samples tell. What is missing also
-    wanders, the more the slower: a rhythm counts by how far it stands out from the frequencies beside it. Each is
-    taken away before the next is looked for (as by Hogbom's CLEAN, Astron. Astrophys. Suppl. 15, 1974), since at uneven
-    places one shows at other frequencies too.
+    wanders, the more the slower, so one counts by its power, the next by how far it stands out from the frequencies
+    beside it, and so on. Each is taken away before the next is looked for (as by Hogbom's CLEAN, Astron. Astrophys.
+    Suppl. 15, 1974), since at uneven places one shows at other frequencies too.
     """
     frequencies = _frequencies(place, *between)
     left = clipped(torque) if frequencies.size else torque
@@ -41,8 +41,8 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
         if not apart.any():
             break
         power = _power(place, left, frequencies)
-        height = np.where(apart, power / _beside(power), 0.0)
-        found.append(float(frequencies[np.argmax(height)]))
+        clear = power if len(found) % 2 == 0 else power / _beside(power)
+        found.append(float(frequencies[np.argmax(np.where(apart, clear, 0.0))]))
         left = left - waves(place, left, found[-1:])
     return found
 

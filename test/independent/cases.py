@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from reference.event_driven import COULOMB, Valve, spring
+from independent.event_driven import COULOMB, Valve, spring
 
 Values = dict[str, float]
 
