@@ -20,6 +20,7 @@ def played(graph, fault, repeats):
     """What the scripted sensor measured, and all messages above OK meanwhile."""
     diagnostics = graph.watch("/diagnostics", DiagnosticArray)
     controller = graph.start("controller")
+    graph.until(lambda: diagnostics, "the controller's reports, before anything is to be heard in them")
     bench = graph.run([sys.executable, str(BENCH), fault, str(repeats)])
     graph.until(lambda: bench.poll() is not None, "the end of the script")
     _, output = graph.ended(bench, by=None)
