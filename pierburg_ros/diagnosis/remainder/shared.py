@@ -8,13 +8,16 @@ by its independent stretches, not by its samples, so that what is known of the v
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.deadline import Deadline, OutOfTime
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import promised
@@ -25,10 +28,11 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
+from pierburg_ros.estimation.explanation import Explanation, canonical
 from pierburg_ros.estimation.likelihood import repetition
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.plant import Model
+from pierburg_ros.workers import workers
 
 FOLDS = 4
 """Parts into which the recordings are divided, each left out in turn. Work: every effect looked at is fitted once more
@@ -46,7 +50,7 @@ MOST = 5
 class LeftOut:
     """What recordings left out of the fit say of an effect.
 
-    Their error [measured unit], the geometric mean of root mean squares, `without` it and `beside` the others with it,
+    Their error [measured unit], the geometric mean of root mean squares, `without` it and `beside` those added before,
     in how many of the `parts` it `helped`, and the names of the recordings in these.
     """
 
@@ -57,23 +61,68 @@ class LeftOut:
     recordings: tuple[str, ...] = ()
 
 
+Map = Callable[..., Iterable[Any]]
 Folds = list[tuple[Data, Data]]
 """Pairs of what is fitted and what is left out."""
 
 
-def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fit, dict[str, LeftOut]]:
-    """A fit with the effects that each lower the error on recordings left out, and what speaks for each, by id.
+@dataclass(frozen=True)
+class _Parts:
+    """What a fit leaves of each part when it is fitted to the others: RMSE [noise] and independent stretches, shape
+    (parts,); and how improbable its values are, in -2 log probability."""
 
-    They are added one by one.
+    errors: Signal
+    stretches: Signal
+    improbable: float
+
+    @property
+    def mean(self) -> float:
+        """Geometric mean of the errors: a part whose error is large in any case does not decide alone."""
+        return float(np.exp(np.mean(np.log(self.errors))))
+
+
+@dataclass(frozen=True)
+class _Round:
+    """A fit with the effects that have been added so far, and what it leaves of recordings left out."""
+
+    fit: Fit
+    parts: _Parts
+
+
+Shared = tuple[Fit, dict[str, LeftOut]]
+"""A fit with effects, and what recordings left out say of each, by id."""
+
+
+def shared_effects(
+    found: Found, progress: Progress, jobs: int | None = None, deadline: Deadline | None = None
+) -> Shared:
+    """A fit with the effects that each lower the error on recordings left out, added one by one.
 
     The parameters that recordings tell apart are fitted beside them, from their nominal values and from the
-    recalibrated ones, as far as what remains speaks against what was known of them.
+    recalibrated ones, as far as what remains speaks against what was known of them. At the `deadline` it is what
+    stood then; OutOfTime where that is nothing.
     """
+    rounds: list[_Round] = []
+    deadline = deadline or Deadline()
+    with workers(jobs, deadline) as pool:
+        deadline.attempt(lambda: rounds.extend(_rounds(found, pool, progress)), None)
+    if not rounds:
+        raise OutOfTime
+    said = {
+        after.fit.explanation.variants[-1].effect: _left_out(found.data, before.parts, after.parts)
+        for before, after in pairwise(rounds)
+    }
+    return rounds[-1].fit, said
+
+
+def _rounds(found: Found, pool: Executor, progress: Progress) -> Iterator[_Round]:
+    """The fit without effects, and one more for each that is added."""
     data, nominal, recalibrated = all_training(found.data), found.nominal, found.recalibrated
     folds, starts = _folds(data), (nominal.values, recalibrated.values)
-    settled = (_settled(data, nominal, recalibrated.explanation, start) for start in starts)
+    settled = pool.map(lambda start: _settled(data, nominal, recalibrated.explanation, start), starts)
     chosen = min(settled, key=lambda fit: fit.ratio)
-    parts = _parts(nominal, folds, chosen)
+    parts = _parts(nominal, folds, chosen, pool.map)
+    yield _Round(chosen, parts)
     while len(chosen.explanation.variants) < MOST:
         tasks = _tasks(found, data, chosen)
         fits = _grown(data, nominal, chosen, tasks, pool)
@@ -84,10 +133,8 @@ def shared_effects(found: Found, pool: Executor, progress: Progress) -> tuple[Fi
         if gains[best] <= _by_chance(len(tasks)):
             break
         chosen = _settled(data, nominal, fits[best].explanation, fits[best].values)
-        parts = _parts(nominal, folds, chosen)
-    variants = chosen.explanation.variants
-    said = pool.map(lambda lost: _left_out(data, nominal, folds, chosen, lost, parts), variants)
-    return chosen, dict(zip(chosen.explanation.effects, said, strict=True))
+        parts = _parts(nominal, folds, chosen, pool.map)
+        yield _Round(chosen, parts)
 
 
 def _believing(data: Data, nominal: Model, residual: Signal) -> Estimator:
@@ -148,28 +195,14 @@ def _brief_fit(data: Data, nominal: Model, chosen: Fit, task: tuple[Explanation,
     return min(fits, key=lambda fit: fit.chi2) if fits else None
 
 
-@dataclass(frozen=True)
-class _Parts:
-    """What a fit leaves of each part when it is fitted to the others: RMSE [noise] and independent stretches, shape
-    (parts,); and how improbable its values are, in -2 log probability."""
-
-    errors: Signal
-    stretches: Signal
-    improbable: float
-
-    @property
-    def mean(self) -> float:
-        """Geometric mean of the errors: a part whose error is large in any case does not decide alone."""
-        return float(np.exp(np.mean(np.log(self.errors))))
-
-
-def _parts(nominal: Model, folds: Folds, fit: Fit) -> _Parts:
-    errors, stretches = [], []
-    for fitted, left in folds:
+def _parts(nominal: Model, folds: Folds, fit: Fit, over: Map = map) -> _Parts:
+    def left_of(fold: tuple[Data, Data]) -> tuple[float, float]:
+        fitted, left = fold
         believing = _believing(fitted, nominal, fitted.residual(fit.model))
         residual = left.residual(believing.fit(fit.explanation, fit.values, ROUNDS).model)
-        errors.append(rms(residual))
-        stretches.append(residual.size / repetition(residual))
+        return rms(residual), residual.size / repetition(residual)
+
+    errors, stretches = zip(*over(left_of, folds), strict=True)
     coordinates = Estimator(folds[0][0], nominal).coordinates(fit.explanation)
     rows = improbability(coordinates, coordinates.point(fit.values))
     return _Parts(np.array(errors), np.array(stretches), float(rows @ rows))
@@ -184,14 +217,12 @@ def _gain(smaller: _Parts, larger: _Parts) -> float:
     return float(2.0 * told + smaller.improbable - larger.improbable)
 
 
-def _left_out(data: Data, nominal: Model, folds: Folds, chosen: Fit, variant: Variant, beside: _Parts) -> LeftOut:
-    """What the parts left out say of an effect; `beside` are they with all effects."""
-    bare = _settled(data, nominal, without(chosen.explanation, variant), chosen.values)
-    lacking = _parts(nominal, folds, bare)
-    helped = beside.errors < lacking.errors
-    recordings = tuple(name for (_, left), helps in zip(folds, helped, strict=True) if helps for name in _names(left))
-    without_it, with_it = lacking.mean * data.noise, beside.mean * data.noise
-    return LeftOut(without_it, with_it, int(np.sum(helped)), len(folds), recordings)
+def _left_out(data: Data, before: _Parts, after: _Parts) -> LeftOut:
+    """What the parts left out said of an effect when it was added."""
+    helped = after.errors < before.errors
+    told = zip(_folds(data), helped, strict=True)
+    recordings = tuple(name for (_, left), helps in told if helps for name in _names(left))
+    return LeftOut(before.mean * data.noise, after.mean * data.noise, int(np.sum(helped)), helped.size, recordings)
 
 
 def _names(data: Data) -> list[str]:

@@ -1,17 +1,15 @@
 """Effects that several recordings share, judged on recordings left out."""
 
-from concurrent.futures import ThreadPoolExecutor
-
 import pytest
 from support.fits import found_among
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.deadline import Deadline, OutOfTime
+from pierburg_ros.diagnosis.remainder.shared import Shared, shared_effects
+from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
 
 TRUTH = {"viscous_friction.coefficient": 0.03, "sensor_lag.time_constant": 0.01}
-Shared = tuple[Fit, dict[str, LeftOut]]
 pytestmark = pytest.mark.search
 
 
@@ -19,8 +17,7 @@ def shared_by(changes: dict[str, float]) -> Shared:
     """What three recordings of the nominal valve with `changes` share."""
     data = data_on(*(recording(changes, duration=6.0, seed=seed) for seed in range(3)))
     found = found_among(data, Estimator(data, NOMINAL).fit(Explanation()))
-    with ThreadPoolExecutor(2) as pool:
-        return shared_effects(found, pool, lambda _: None)
+    return shared_effects(found, lambda _: None)
 
 
 @pytest.fixture(scope="module")
@@ -41,8 +38,32 @@ def test_says_how_far_each_effect_helps_where_it_was_not_fitted(shared: Shared) 
     assert set(left_out) == set(fit.explanation.effects)
     for said in left_out.values():
         assert (said.helped, said.parts) == (3, 3)
-        assert said.beside == pytest.approx(fit.ratio * 0.003, rel=0.05)
         assert said.without > 1.2 * said.beside
+    first, last = (left_out[variant.effect] for variant in fit.explanation.variants)
+    assert first.beside == pytest.approx(last.without)
+    assert last.beside == pytest.approx(fit.ratio * 0.003, rel=0.05)
+
+
+def test_after_an_interrupt_stands_what_had_been_added_by_then() -> None:
+    data = data_on(*(recording(TRUTH, duration=6.0, seed=seed) for seed in range(3)))
+    found = found_among(data, Estimator(data, NOMINAL).fit(Explanation()))
+    seen: list[str] = []
+
+    def interrupted_at_the_second(label: str) -> None:
+        seen.append(label)
+        if len(seen) == 2:
+            raise KeyboardInterrupt
+
+    fit, left_out = shared_effects(found, interrupted_at_the_second)
+    assert fit.explanation.effects == tuple(left_out)
+    assert len(left_out) == 1
+
+
+def test_no_time_at_all_is_said() -> None:
+    data = data_on(*(recording({}, duration=6.0, seed=seed) for seed in range(3)))
+    found = found_among(data, Estimator(data, NOMINAL).fit(Explanation()))
+    with pytest.raises(OutOfTime):
+        shared_effects(found, lambda _: None, deadline=Deadline(0.0))
 
 
 def test_believes_nothing_where_nothing_is_missing() -> None:
