@@ -255,10 +255,14 @@ class Search:
     def _pruned(self) -> Fit:
         """The preferred explanation after each of its parts has been fitted again from its values.
 
-        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins.
+        A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins: from the
+        lowest of the larger one's minima, since from beside it the smaller one may stop again.
         """
         best = self.preferred()
         while True:
+            if best.explanation.size > 1 and jumps(best.explanation):
+                self._refine(best)
+                best = self.fits[best.explanation]
             for quantity in quantities(best.explanation):
                 smaller = self.add(without(best.explanation, quantity), best.values)
                 if _near(smaller, best):
