@@ -32,7 +32,8 @@ def test_two_actuators_in_two_namespaces_keep_their_own_joints_setpoints_and_rec
     }
 
     def arrived(side, angle):
-        return joints[side] and duties[side] and abs(joints[side][-1].position[0] - angle) < 0.05
+        """Six seconds after its first sample too: a recorder may know the plant later than this process does."""
+        return len(joints[side]) > 3000 and duties[side] and abs(joints[side][-1].position[0] - angle) < 0.05
 
     graph.until(lambda: all(arrived(*each) for each in wanted.items()), "both shafts at their setpoints")
     for side, angle in wanted.items():
