@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -70,7 +71,7 @@ def progress() -> Iterator[Tell]:
         yield Bar(bar, bar.add_task("", total=None, words=""))
 
 
-class Stages:
+class Stages(ABC):
     """The step in words, with the time since its stage began."""
 
     def __init__(self) -> None:
@@ -86,9 +87,9 @@ class Stages:
                 self._stage, self._since = step.stage, now
             self.show(step.timed(now - self._since), is_new, now)
 
+    @abstractmethod
     def show(self, step: Step, is_new: bool, now: float) -> None:
         """Show the step, the first of its stage if it `is_new`, at a time [s]."""
-        raise NotImplementedError
 
 
 class Bar(Stages):
