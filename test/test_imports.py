@@ -78,7 +78,12 @@ ROOMS = {
         "experiment": {"fit", "identify", "paper"},
         "description": {"fit", "identifiability", "identify"},
     },
-    "nodes": {"core": set()},
+    "nodes": {
+        "core": set(),
+        "graph": {"core"},
+        "recording": {"core", "graph"},
+        "reports": {"core", "graph"},
+    },
     "plant": {
         "parameters": set(),
         "model": {"parameters"},

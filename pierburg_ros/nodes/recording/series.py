@@ -12,7 +12,7 @@ from pathlib import Path
 import yaml
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.recording_file import RecordingFile
+from pierburg_ros.nodes.recording.file import RecordingFile
 from pierburg_ros.recording.formats.mcap_writer import bag_metadata
 
 METADATA = "metadata.yaml"

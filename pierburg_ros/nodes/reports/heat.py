@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pierburg_ros.nodes.core.protection.winding import Winding
-from pierburg_ros.nodes.diagnostics import ERROR, WARN, Diagnostics
+from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN, Diagnostics
 
 TASK = "winding"
 

@@ -22,8 +22,8 @@ from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.parameter_files import unread_files
-from pierburg_ros.nodes.diagnostics import Diagnostics
-from pierburg_ros.nodes.qos import COMMANDS, overridable
+from pierburg_ros.nodes.graph.diagnostics import Diagnostics
+from pierburg_ros.nodes.graph.qos import COMMANDS, overridable
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.parameter import Value
 

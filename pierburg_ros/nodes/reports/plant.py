@@ -7,9 +7,9 @@ import time
 from rclpy.clock import Clock, ClockType
 
 from pierburg_ros.nodes.core.rate import Rate
-from pierburg_ros.nodes.diagnostics import ERROR, OK, WARN
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.publishers import listed, publishers_of
+from pierburg_ros.nodes.graph.diagnostics import ERROR, OK, WARN
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.publishers import listed, publishers_of
 
 TASK = "duty"
 LOOK = 0.5

@@ -6,9 +6,9 @@ import time
 from collections.abc import Iterable, Mapping
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.recorded_topics import Received
-from pierburg_ros.nodes.recording_file import RecordingFile
-from pierburg_ros.nodes.recording_series import RecordingSeries
+from pierburg_ros.nodes.recording.file import RecordingFile
+from pierburg_ros.nodes.recording.series import RecordingSeries
+from pierburg_ros.nodes.recording.topics import Received
 
 AGAIN = 1.0
 """Time [s] after which a new file is tried where the last one ended for want of room."""

@@ -15,9 +15,9 @@ from rclpy.subscription import Subscription
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.numbering import Numbering
 from pierburg_ros.nodes.core.recorder_parameters import DEFAULT_TOPICS
-from pierburg_ros.nodes.definitions import message_class, type_hash
-from pierburg_ros.nodes.qos import RECORDED, described
-from pierburg_ros.nodes.recording_file import Topic
+from pierburg_ros.nodes.graph.qos import RECORDED, described
+from pierburg_ros.nodes.recording.definitions import message_class, type_hash
+from pierburg_ros.nodes.recording.file import Topic
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from threading import Event
 from rclpy.node import Node
 from std_msgs.msg import Header
 
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.follower import Follower
-from pierburg_ros.nodes.diagnostics import WARN, Diagnostics
-from pierburg_ros.nodes.qos import PROGRESS
-from pierburg_ros.nodes.recorded_time import RECORDED_UNTIL
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.diagnostics import WARN, Diagnostics
+from pierburg_ros.nodes.graph.qos import PROGRESS
+from pierburg_ros.nodes.recording.time import RECORDED_UNTIL
 
 LOOK = 0.002
 """Time [s] between two looks whether a recorder has moved."""

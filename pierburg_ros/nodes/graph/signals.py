@@ -9,7 +9,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
-from pierburg_ros.nodes.qos import SIGNALS
+from pierburg_ros.nodes.graph.qos import SIGNALS
 
 
 class Signal:

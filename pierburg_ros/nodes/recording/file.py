@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pierburg_ros.nodes.definitions import definition, type_hash
+from pierburg_ros.nodes.recording.definitions import definition, type_hash
 from pierburg_ros.recording.formats.mcap_writer import McapWriter
 from pierburg_ros.recording.loss import LOSSES
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lifecycle_msgs.srv import ChangeState
 from rclpy.lifecycle import LifecycleNodeMixin, LifecycleState, TransitionCallbackReturn
 
-from pierburg_ros.nodes.parameters import LiveNode
+from pierburg_ros.nodes.graph.parameters import LiveNode
 
 DONE = TransitionCallbackReturn.SUCCESS
 

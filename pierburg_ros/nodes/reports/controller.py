@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pierburg_ros.nodes.core.guarded_controller import GuardedController
 from pierburg_ros.nodes.core.protection.fallback import Fallback
 from pierburg_ros.nodes.core.rate import Rate
-from pierburg_ros.nodes.diagnostics import ERROR, OK, WARN, Diagnostics
-from pierburg_ros.nodes.heat_report import HeatReport
+from pierburg_ros.nodes.graph.diagnostics import ERROR, OK, WARN, Diagnostics
+from pierburg_ros.nodes.reports.heat import HeatReport
 
 SENSOR = "angle sensor"
 START = 30.0

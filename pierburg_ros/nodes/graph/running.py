@@ -15,7 +15,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.parameters import LiveNode
+from pierburg_ros.nodes.graph.parameters import LiveNode
 
 TURN = 0.1
 """Longest time [s] until a signal is noticed while nothing else happens."""

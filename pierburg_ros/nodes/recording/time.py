@@ -7,10 +7,10 @@ from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import Header
 
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.source_order import SimulatedTime
-from pierburg_ros.nodes.qos import PROGRESS
-from pierburg_ros.nodes.recorded_topics import Received
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.qos import PROGRESS
+from pierburg_ros.nodes.recording.topics import Received
 
 CLOCK = "/clock"
 RECORDED_UNTIL = "/recorded_until"

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterator
 from threading import Event, Lock, Thread
 
-from pierburg_ros.nodes.recorded_topics import Received, RecordedTopics
+from pierburg_ros.nodes.recording.topics import Received, RecordedTopics
 
 TURN = 0.005
 """Time [s] between two looks: a hundredth of a reader's capacity at 4000 messages a second."""

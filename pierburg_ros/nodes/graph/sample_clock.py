@@ -7,9 +7,9 @@ import time
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.sample_time import SampleTime, StampTime
-from pierburg_ros.nodes.qos import SIGNALS
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.qos import SIGNALS
 
 GRACE = 0.02
 """Time [s] for which a sample waits for its `/clock`, which was sent before it but may be read after it."""
