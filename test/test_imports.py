@@ -70,6 +70,7 @@ ROOMS = {
         "result": {"schema"},
         "report": {"schema", "evidence", "search", "location", "remainder", "limits", "verdict", "result"},
     },
+    "fleets": {"recordings": set(), "ageing": {"run"}},
     "identification": {
         "fit": set(),
         "identifiability": {"fit"},

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.ageing import Ageing, ageing
-from pierburg_ros.fleets.attention import Attention, ranked
-from pierburg_ros.fleets.course import DAY, courses, is_strength, moment
+from pierburg_ros.fleets.ageing.ageing import Ageing, ageing
+from pierburg_ros.fleets.ageing.attention import Attention, ranked
+from pierburg_ros.fleets.ageing.course import DAY, courses, is_strength, moment
 from pierburg_ros.fleets.page import fleet_page
+from pierburg_ros.fleets.recordings.units import sources
 from pierburg_ros.fleets.run import Examined, Report, Where, conduct
 from pierburg_ros.fleets.store import Store
 from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows, require_parquet, write_parquet
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.fleets.units import sources
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole

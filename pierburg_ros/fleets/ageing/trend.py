@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
-from pierburg_ros.fleets.course import Course
-from pierburg_ros.fleets.regression import Regression, regression
+from pierburg_ros.fleets.ageing.course import Course
+from pierburg_ros.fleets.ageing.regression import Regression, regression
 
 FEWEST = 4
 """Recordings from which on a trend is sought. Derived: a line has two numbers, and two more are the least that tell

@@ -11,8 +11,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.pattern import instant, matcher
-from pierburg_ros.fleets.place import below, file_system, recordings_below
+from pierburg_ros.fleets.recordings.pattern import instant, matcher
+from pierburg_ros.fleets.recordings.place import below, file_system, recordings_below
 
 TABLES = (".csv", ".parquet")
 COLUMNS = ("recording", "unit", "time")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from pierburg_ros.fleets.trend import Line
+from pierburg_ros.fleets.ageing.trend import Line
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.fleets.course import Course
-from pierburg_ros.fleets.regression import Regression, regression
-from pierburg_ros.fleets.trend import columns
+from pierburg_ros.fleets.ageing.course import Course
+from pierburg_ros.fleets.ageing.regression import Regression, regression
+from pierburg_ros.fleets.ageing.trend import columns
 
 EITHER_SIDE = 2
 """Recordings that a step must have before and after it. Derived: one alone may be an outlier."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.fleets.course import Course
-from pierburg_ros.fleets.discovery import FALSE, discovery_rates
-from pierburg_ros.fleets.forecast import Forecast, forecast
-from pierburg_ros.fleets.outliers import differences
-from pierburg_ros.fleets.step import Step, step
-from pierburg_ros.fleets.trend import Line, line
+from pierburg_ros.fleets.ageing.course import Course
+from pierburg_ros.fleets.ageing.discovery import FALSE, discovery_rates
+from pierburg_ros.fleets.ageing.forecast import Forecast, forecast
+from pierburg_ros.fleets.ageing.outliers import differences
+from pierburg_ros.fleets.ageing.step import Step, step
+from pierburg_ros.fleets.ageing.trend import Line, line
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 
-from pierburg_ros.fleets.ageing import Ageing
+from pierburg_ros.fleets.ageing.ageing import Ageing
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.pages.numbers import interval, value, words
 
