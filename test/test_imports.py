@@ -57,6 +57,7 @@ ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {
+    "cli": {"console": set(), "options": {"console"}},
     "diagnosis": {
         "schema": set(),
         "cleaning": set(),

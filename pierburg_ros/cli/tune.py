@@ -12,10 +12,10 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import JobsOption, SchedulerOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal

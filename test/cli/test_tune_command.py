@@ -6,7 +6,7 @@ from dataclasses import asdict
 import pytest
 
 from pierburg_ros.cli.app import main
-from pierburg_ros.cli.models import chosen_model
+from pierburg_ros.cli.options.models import chosen_model
 from pierburg_ros.closed_loop.corrected import task_for
 from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.goal import Goal

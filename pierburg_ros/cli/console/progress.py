@@ -12,7 +12,7 @@ from threading import Lock
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
 
 SELDOM = 10.0
 """Time [s] between two lines of progress in a log. Chosen: a diagnosis of two minutes leaves a dozen."""

@@ -21,7 +21,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
-from pierburg_ros.cli.terminal import loudness
+from pierburg_ros.cli.console.terminal import loudness
 from pierburg_ros.errors import InputError
 
 OUTPUT = ("--output", "-o")
