@@ -53,7 +53,7 @@ def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict
     unit = actuator.shown(recordings[0].unit)
     trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, unit)
     findings = {name: trace.finding(name) for name in names}
-    gauges = (name for name in scaling(actuator) if name not in fitted.names)
+    gauges = (name for name in scaling(actuator) if name not in fitted.names and findings[name].identifiable)
     return findings | {name: Finding(False, None, {}, ONLY_RATIOS) for name in gauges}
 
 

@@ -61,5 +61,7 @@ def test_a_torque_over_a_turn_is_part_of_the_model_and_all_go_in_ratio_to_the_co
     assert found.repeated is not None and "7 times" in found.repeated
     assert found.model.residual_torque is None and found.fitted.model.residual_torque is not None
     assert found.fitted.values["total_inertia"] == pytest.approx(2.5e-4, rel=0.3)
-    finding = found.findings["torque_constant"]
+    assert not found.findings["torque_constant"].identifiable
+    held = identify(start, [turning(true)], fixed=("viscous_friction.coefficient", "total_inertia"))
+    finding = held.findings["torque_constant"]
     assert not finding.identifiable and "only in ratio" in finding.reason
