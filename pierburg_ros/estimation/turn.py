@@ -49,13 +49,16 @@ def described_turn(torque: Signal, unit: str) -> str:
 def repeated(data: Data, model: Model) -> Balance | None:
     """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
 
-    Of several runs that one tells it in which the most is seen.
+    All runs that go round tell it together: the angle is counted from the same place in all recordings of an actuator.
     """
-    turning = [run for run in data.runs if goes_round(model, run.measured, run.quantity)]
+    turning = [
+        (run.inputs, run.time, run.measured, run.train)
+        for run in data.runs
+        if goes_round(model, run.measured, run.quantity)
+    ]
     if not turning:
         return None
-    run = max(turning, key=lambda run: run.time.size)
-    found = over_a_turn(model.with_residual(None), run.inputs, run.time, run.measured, run.train)
+    found = over_a_turn(model.with_residual(None), turning)
     return found if found.orders.size else None
 
 
