@@ -140,7 +140,8 @@ def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
         if abs(travel) > p.finest and step > shortest(p):
             step = max(0.9 * step * p.finest / abs(travel), shortest(p))
             continue
-        excess = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line) / allowed(p, travel)
+        wrong = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line)
+        excess = beyond(p, wrong, travel)
         if not excess > 1.0 or step <= shortest(p):
             s.step = next_step(s.step, step, remaining, excess)
             break
@@ -187,6 +188,13 @@ def _first_step(p, s, slope, remaining):
 def allowed(p, travel):
     """Error [rad] that a step of this `travel` [rad] may make."""
     return TOLERANCE * p.own.angle + SHARE * abs(travel)
+
+
+@kernel
+def beyond(p, wrong, travel):
+    """Error of a step over the one that it may make; infinite where the step led beyond all numbers."""
+    excess = wrong / allowed(p, travel)
+    return math.inf if math.isnan(excess) else excess
 
 
 @kernel
