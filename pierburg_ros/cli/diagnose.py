@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption
+from pierburg_ros.cli.jobs import BudgetOption, JobsOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
@@ -45,9 +45,7 @@ def diagnose(
     time: TimeOption = None,
     rerun: RerunOption = None,
     jobs: JobsOption = None,
-    budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
-        USUAL_BUDGET
-    ),
+    budget: BudgetOption = USUAL_BUDGET,
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> str:

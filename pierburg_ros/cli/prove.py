@@ -10,10 +10,10 @@ from typing import Annotated, Any
 import typer
 
 from pierburg_ros.cli import prove_real
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
+from pierburg_ros.cli.jobs import BudgetOption, JobsOption, SchedulerOption
 from pierburg_ros.cli.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.progress import Step, Tell, progress
-from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
+from pierburg_ros.cli.prove_real import LevelOption, RealOption
 from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.cli.terminal import terminal
