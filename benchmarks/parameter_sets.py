@@ -4,7 +4,8 @@
 
 A set draws base parameters anywhere in their ranges and up to six effects up to `FAR` times what is plausible, ends
 included, starts anywhere on the travel, and runs the time of one travel through steps, reversals and an open bridge.
-A process that stays with one set longer than `HANGS` is ended. Called again with the same output it goes on; `--seed` shows one set again.
+A process that stays with one set longer than `HANGS` is ended. Called again with the
+same output it goes on; `--seed` shows one set again.
 """
 
 from __future__ import annotations

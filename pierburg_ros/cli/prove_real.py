@@ -30,14 +30,6 @@ LevelOption = Annotated[
     list[str] | None,
     typer.Option(help=f"With --real: only this strength ({', '.join(LEVELS)}); may be repeated."),
 ]
-BudgetOption = Annotated[
-    float | None,
-    typer.Option(
-        min=1.0,
-        show_default=f"{USUAL_BUDGET:g}",
-        help="With --real: seconds of an idle machine for each recording that is diagnosed.",
-    ),
-]
 
 
 def machine(

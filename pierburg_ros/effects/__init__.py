@@ -56,7 +56,11 @@ EFFECT: dict[str, Effect] = {effect.id: effect for effect in EFFECTS}
 DECLARED: dict[str, Parameter] = {f"{effect.id}.{p.name}": p for effect in EFFECTS for p in effect.parameters}
 """Every parameter by dotted name."""
 ADDED: dict[str, tuple[str, ...]] = {
-    name: tuple(f"{effect.id}.{effect.elsewhere.quantities[p.added_to]}" for effect in EFFECTS if p.added_to in effect.elsewhere.quantities)
+    name: tuple(
+        f"{effect.id}.{effect.elsewhere.quantities[p.added_to]}"
+        for effect in EFFECTS
+        if p.added_to in effect.elsewhere.quantities
+    )
     for name, p in DECLARED.items()
     if p.added_to is not None
 }

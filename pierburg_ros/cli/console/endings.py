@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import sys
 import threading
@@ -9,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
 
-from pierburg_ros.errors import one_line
+from pierburg_ros.errors import near, one_line
 
 REFUSED = 2
 INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
@@ -53,6 +54,13 @@ def usage(error: Exception, command: str) -> str:
         raise error
     meant = getattr(error, "possibilities", None)
     message = error.message if meant else error.format_message()  # type: ignore[attr-defined]
-    question = f" Did you mean {' or '.join(sorted(meant))}?" if meant else ""
-    stop = "" if message.rstrip().endswith((".", "?")) else "."
-    return f"{message.rstrip()}{stop}{question} See '{command} --help'."
+    message = message.rstrip().replace("Value error, ", "")
+    question = f" Did you mean {' or '.join(sorted(meant))}?" if meant else nearest_choice(message)
+    stop = "" if message.endswith((".", "?")) else "."
+    return f"{message}{stop}{question} See '{command} --help'."
+
+
+def nearest_choice(message: str) -> str:
+    """The question after `'chck' is not one of 'new', 'check'`; nothing after other messages."""
+    found, _, choices = message.partition(" is not one of ")
+    return near(found.rpartition(" ")[2].strip("'"), re.findall("'([^']+)'", choices)) if choices else ""

@@ -20,7 +20,7 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.subscription import Subscription
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.nodes.core.parameter_files import unread_files
 from pierburg_ros.nodes.graph.diagnostics import Diagnostics
 from pierburg_ros.nodes.graph.qos import COMMANDS, overridable
@@ -130,7 +130,8 @@ class LiveNode(Node):
         return SetParametersResult(successful=False, reason=reason)
 
     def _unknown(self, name: str) -> str:
-        return f"{self.get_name()} has no parameter {name!r}; 'ros2 param list' shows those it has."
+        meant = near(name, self._declared)
+        return f"{self.get_name()} has no parameter {name!r}; 'ros2 param list' shows those it has.{meant}"
 
     def _unused_overrides(self) -> list[str]:
         """Complaints about qualities of service that were given for topics which this node does not have."""
