@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.turn import repeated, with_lesser_orders
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
@@ -16,10 +17,6 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
-
-BETTER = 0.9
-"""Share of the error of the recalibrated model on samples that validate, to which a named effect with its overtones
-must bring it. Given: a name only where unseen data improve by a tenth."""
 
 
 def supported_around(data: Data, nominal: Model, recalibrated: Fit) -> Supported | None:
