@@ -13,8 +13,8 @@ from pierburg_ros.estimation.likelihood import SURE
 
 KNOWN = 0.2
 """Standard deviation of the logarithm of a base parameter around its nominal value. Measured: on n = 4 splits of eight
-runs of a servo, with the same two effects, the error on the runs left out is 0.125, 0.036, 0.045 and 0.162 rad at 0.5;
-0.113, 0.037, 0.048 and 0.079 at 0.2; 0.116, 0.038, 0.044 and 0.065 at 0.1."""
+runs of a servo, with the same two effects, the error on the runs left out is 0.116, 0.044, 0.045 and 0.072 rad at 0.5;
+0.105, 0.045, 0.044 and 0.062 at 0.2; 0.098, 0.043, 0.051 and 0.065 at 0.1."""
 
 
 def improbability(coordinates: Coordinates, point: Signal) -> Signal:
