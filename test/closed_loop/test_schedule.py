@@ -7,9 +7,9 @@ import pytest
 
 from pierburg_ros.closed_loop import simulate_runs
 from pierburg_ros.closed_loop.load import load
+from pierburg_ros.closed_loop.plants import HOT, variations
 from pierburg_ros.control import Controller, Settings
 from pierburg_ros.plant import Inputs, Model, simulate
-from pierburg_ros.closed_loop.plants import HOT, variations
 
 PERIOD = 0.002
 SCHEDULE = {"load_closed": 0.1, "load_open": 0.2, "load_share": 1.0}
@@ -27,7 +27,9 @@ def hall(angle: float) -> float:
     return 0.42 + 4.1 * angle / (math.pi / 2)
 
 
-@pytest.mark.parametrize(("angle", "share", "duty"), [(0.0, 1.0, 0.1), (math.pi / 4, 1.0, 0.15), (math.pi / 2, 0.5, 0.1)])
+@pytest.mark.parametrize(
+    ("angle", "share", "duty"), [(0.0, 1.0, 0.1), (math.pi / 4, 1.0, 0.15), (math.pi / 2, 0.5, 0.1)]
+)
 def test_without_an_error_the_duty_is_that_of_the_load(angle, share, duty):
     controller = Controller(Settings().with_values({**SCHEDULE, "load_share": share}))
     for _ in range(100):
