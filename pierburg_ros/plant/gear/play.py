@@ -12,7 +12,7 @@ from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.gear.rigid import slide_joined
 from pierburg_ros.plant.motion.body import JOINED, PARTED, balance, piece
-from pierburg_ros.plant.motion.events import hold, lower, motor_onset, onset, shortest, slide, upper
+from pierburg_ros.plant.motion.events import hold, lower, motor_onset, onset, shortest, slide, standing_time, upper
 from pierburg_ros.plant.torques.drive import relaxed_current
 
 TURNS = 1e-4
@@ -145,10 +145,10 @@ def _bring_together(p, s, angle, flank):
 
 @kernel
 def _wait(p, s, remaining):
-    """Let the motor stand with its teeth parted: nothing of it moves but the current and the time."""
+    """Let the motor stand with its teeth parted, until the current sets it moving: only that and the time change."""
     step = remaining
     if p.armature_inductance.inductance != 0.0:
-        step = min(step, 0.1 * p.armature_inductance.inductance / p.armature_resistance)
+        step = standing_time(p, s, PARTED, remaining)
         s.current = relaxed_current(p, s, step)
     s.time += step
     return step

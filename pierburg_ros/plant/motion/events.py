@@ -86,7 +86,7 @@ def hold(p, s, remaining):
         step = min(step, external_load.next_switch(p.external_load, s.time) - s.time)
         if p.external_load.frequency > 0.0:
             step = min(step, 0.02 / p.external_load.frequency)
-    step = _standing_time(p, s, min(max(step, shortest(p)), remaining))
+    step = standing_time(p, s, JOINED, min(max(step, shortest(p)), remaining))
     if inductive:
         s.current = relaxed_current(p, s, step)
     s.time += step
@@ -94,14 +94,14 @@ def hold(p, s, remaining):
 
 
 @kernel
-def _standing_time(p, s, step):
+def standing_time(p, s, kind, step):
     """How much of `step` [s] it stands: the current relaxes one way, so what does not move it at the end never did."""
-    if _onset_after(p, s, step) == 0.0:
+    if _onset_after(p, s, kind, step) == 0.0:
         return step
     early, late = 0.0, step
     for _ in range(40):
         middle = 0.5 * (early + late)
-        if _onset_after(p, s, middle) == 0.0:
+        if _onset_after(p, s, kind, middle) == 0.0:
             early = middle
         else:
             late = middle
@@ -109,8 +109,10 @@ def _standing_time(p, s, step):
 
 
 @kernel
-def _onset_after(p, s, step):
+def _onset_after(p, s, kind, step):
     amperes = relaxed_current(p, s, step) if p.armature_inductance.inductance != 0.0 else 0.0
+    if kind == PARTED:
+        return motor_onset(p, s, 0.0, amperes)
     return onset(p, s, s.time + step, amperes)
 
 
