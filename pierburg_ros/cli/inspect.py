@@ -10,8 +10,8 @@ import typer
 from rich.console import Console
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Model

@@ -12,10 +12,10 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import JobsOption, SchedulerOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
@@ -55,6 +55,9 @@ def tune(
         bool | None,
         typer.Option("--predictor/--no-predictor", help="Smith predictor; default: where the model has delay or lag."),
     ] = None,
+    schedule: Annotated[
+        bool, typer.Option("--schedule", help="Schedule the duty that carries the load over the setpoint.")
+    ] = False,
     compare: Annotated[
         Path | None,
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
@@ -76,10 +79,10 @@ def tune(
     effort = Effort(generations, members, seed, jobs)
     if model is not None or actuator is not None:
         refuse_for_one_plant({"--compare": compare, "--scheduler": scheduler})
-        task = task_for(chosen_model(model, actuator), goal, predictor)
+        task = task_for(chosen_model(model, actuator), goal, predictor, schedule)
         return retuned(task, in_use, effort, output)
-    if predictor is not None or controller is not None:
-        raise InputError("Found --predictor or --controller without a model, expected one. Add --model model.yaml.")
+    if predictor is not None or controller is not None or schedule:
+        raise InputError("Found --predictor, --schedule or --controller, but no model. Add --model model.yaml.")
     names = ["PIFLC"] if compare is None else list(DESIGNS)
     if scheduler is None:
         plants = plant_set()

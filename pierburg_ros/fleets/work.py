@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.errors import InputError, one_line
-from pierburg_ros.fleets.place import at_hand, digest
+from pierburg_ros.fleets.recordings.place import at_hand, digest
+from pierburg_ros.fleets.recordings.units import Source
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.fleets.units import Source
 from pierburg_ros.identification.fit import fit
 from pierburg_ros.library.diagnosing import Diagnosis, diagnose
 from pierburg_ros.plant import Model

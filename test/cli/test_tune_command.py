@@ -6,7 +6,7 @@ from dataclasses import asdict
 import pytest
 
 from pierburg_ros.cli.app import main
-from pierburg_ros.cli.models import chosen_model
+from pierburg_ros.cli.options.models import chosen_model
 from pierburg_ros.closed_loop.corrected import task_for
 from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.goal import Goal
@@ -97,7 +97,8 @@ def test_the_predictor_can_be_left_out(lagging, tmp_path):
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (("--predictor",), "without a model"),
+        (("--predictor",), "but no model"),
+        (("--schedule",), "but no model"),
         (("--actuator", "pierburg", "--predictor"), "neither dead time nor lag"),
         (("--actuator", "xl330"), "the controller is tuned for a duty, a Hall voltage and a spring"),
         (("--actuator", "pierburg", "--compare", "control.md"), "Found --compare with a model"),

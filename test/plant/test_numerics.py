@@ -60,6 +60,32 @@ def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
     assert time.process_time() - began < allowed
 
 
+def test_a_stiff_gear_that_stands_leaning_comes_to_an_end():
+    """Motor and shaft rest against each other; the angle's rounding swings on the gear for ever, and is no motion."""
+    leaning = {"coulomb_friction": 1e-4, "cogging_torque.amplitude": 56.0, "cogging_torque.phase": 6.127}
+    stiff, rigid = (
+        simulate(NOMINAL.with_values({**leaning, "gear_compliance.stiffness": stiffness}), STEPS, TIME, 1.0)
+        for stiffness in (3e4, 0.0)
+    )
+    assert np.abs(stiff - rigid).max() < 2.0 * 10.0 / 3e4 * 2.7  # V: what the gear gives under the strongest torque
+
+
+def test_a_step_that_leads_beyond_all_numbers_is_taken_shorter():
+    """From the top of a ripple's hill one step of the first length grows beyond all numbers."""
+    hill = {
+        "spring_preload": 8.0,
+        "gear_ratio": 85.79,
+        "gear_compliance.stiffness": 0.42,
+        "gear_compliance.damping": 0.077,
+        "cogging_torque.amplitude": 58.0,
+        "cogging_torque.periods_per_motor_revolution": 381.8,
+        "cogging_torque.phase": 3.64,
+    }
+    for angle in np.linspace(0.1, 1.4, 8):
+        output = simulate(NOMINAL.with_values(hill), STEPS, TIME[:50], angle)
+        assert np.all((output >= 0.42) & (output <= 4.52))
+
+
 def test_a_comparison_with_such_a_model_says_so_in_one_line():
     measured = simulate(NOMINAL, STEPS, TIME)
     recording = Recording("run", "hall_voltage", TIME, measured, Channel(STEPS.time, STEPS.command))

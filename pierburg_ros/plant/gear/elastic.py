@@ -16,7 +16,7 @@ from pierburg_ros.plant.motion.body import PARTED, Line, after, balance, error, 
 from pierburg_ros.plant.motion.events import (
     CORRECTED,
     EVEN,
-    allowed,
+    beyond,
     lower,
     motor_onset,
     next_step,
@@ -28,7 +28,9 @@ from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.friction import level
 
 FLOOR = 1e-4
-"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0."""
+"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0.
+
+Standing or sliding: teeth that damp a sliding shaft alone would send it back at once where they set it moving."""
 
 
 class Sides(NamedTuple):
@@ -81,7 +83,7 @@ def _grip(p, s, twist, rate, angle, velocity, bristle, time):
     pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
     if p.backlash.gap > 0.0 and not pushes:
         return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.least_damping(p)))
-    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness - viscous) if s.direction != 0.0 else gear.damping
+    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness)
     return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous)
 
 
@@ -245,7 +247,7 @@ def move(p, s, remaining):
         step = max(min(step, EVEN / p.external_load.frequency), shortest(p))
     while True:
         sides = _trial(p, s, grip, line, step)
-        excess = max(sides.wrong / allowed(p, sides.motor_travel), abs(sides.motor_travel) / p.finest)
+        excess = max(beyond(p, sides.wrong, sides.motor_travel), abs(sides.motor_travel) / p.finest)
         if not excess > 1.0 or step <= shortest(p):
             break
         step = shorter(p, step, excess)

@@ -22,6 +22,9 @@ PARTED = 1
 
 STILL = 6e-11
 """Swings of the velocity smaller than this share of the no-load speed are none."""
+UNMOVED = 1e-11
+"""Swings of the angle smaller than this share of the travel are none: the rounding of an angle is only a thousand times
+smaller, and a stiff gear that swings within it never comes to an end. A step may be wrong by far more."""
 
 
 class Line(NamedTuple):
@@ -189,7 +192,8 @@ def turn(p, s, velocity, line):
 def _turn(p, damping, stiffness, acceleration, jerk):
     """Time [s] to the next turn of a velocity that swings; infinite where it hardly does."""
     square = stiffness - 0.25 * damping * damping
-    if abs(acceleration) * math.sqrt(square) + abs(jerk) < STILL * p.own.angle / p.own.time * square:
+    least = max(STILL / p.own.time, UNMOVED * math.sqrt(square)) * p.own.angle * square
+    if abs(acceleration) * math.sqrt(square) + abs(jerk) < least:
         return math.inf
     return turning_time(damping, stiffness, acceleration, jerk)
 

@@ -167,7 +167,7 @@ def slide(p, s, kind, angle, velocity, direction, low, high, line, remaining):
             step = max(0.9 * step * p.finest / abs(travel), shortest(p))
             continue
         missed = _missed(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line)
-        excess = error(p, s, line, step, missed) / allowed(p, travel)
+        excess = beyond(p, error(p, s, line, step, missed), travel)
         if s.piece.order == 2 and not rests and not stops:
             more, faster = correction(p, s, step, missed)
             if (ended + faster) * direction > 0.0 and (angle + travel + more - limit) * direction < 0.0:
@@ -218,6 +218,13 @@ def _first_step(p, s, slope, remaining):
 def allowed(p, travel):
     """Error [rad] that a step of this `travel` [rad] may make."""
     return TOLERANCE * p.own.angle + SHARE * abs(travel)
+
+
+@kernel
+def beyond(p, wrong, travel):
+    """Error of a step over the one that it may make; infinite where the step led beyond all numbers."""
+    excess = wrong / allowed(p, travel)
+    return math.inf if math.isnan(excess) else excess
 
 
 @kernel
