@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.estimation.turn import described_turn, has_overtones, with_lesser_orders, with_turn
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
+from pierburg_ros.estimation.turn import described_turn, has_overtones, with_lesser_orders, with_turn
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 
