@@ -23,7 +23,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.report.horizons import horizons
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.estimation.data import Data, data_of, in_parts
+from pierburg_ros.estimation.data import Data, all_training, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.plant import Model
@@ -59,30 +59,19 @@ def main() -> None:
 
 
 def re_estimated(recordings: list[Recording]) -> Model:
-    """The description with all that recordings tell fitted to them, but for stretches in which the shaft was pushed."""
+    """The description with its numbers fitted to recordings, but for stretches in which the shaft was pushed."""
     data = data_of(recordings, NOMINAL)
-    return (
-        Estimator(whole(untouched(data, NOMINAL, recordings) or data), NOMINAL)
-        .fit(Explanation(drifting(NOMINAL)))
-        .model
-    )
-
-
-def whole(data: Data) -> Data:
-    return replace(data, runs=tuple(run.trained_on(np.ones_like(run.train)) for run in data.runs))
+    kept = all_training(untouched(data, NOMINAL, recordings) or data)
+    return Estimator(kept, NOMINAL).fit(Explanation(drifting(NOMINAL))).model
 
 
 def as_test(recording: Recording) -> Data:
     """A run of which no sample was fitted, without the stretches in which the shaft was pushed."""
     data = in_parts(data_of([recording], NOMINAL))
     kept = untouched(data, NOMINAL, [recording]) or data
-    none = np.zeros(1, dtype=bool)
-    return replace(
-        kept,
-        runs=tuple(
-            replace(run, train=none.repeat(run.time.size), validation=none.repeat(run.time.size)) for run in kept.runs
-        ),
-    )
+    none = [np.zeros(run.time.size, dtype=bool) for run in kept.runs]
+    runs = (replace(run, train=each, validation=each) for run, each in zip(kept.runs, none, strict=True))
+    return replace(kept, runs=tuple(runs))
 
 
 def errors(unseen: list[Data], models: list[Model]) -> str:

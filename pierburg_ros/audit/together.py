@@ -19,7 +19,7 @@ ALONE = 0.8
 physics takes the numbers elsewhere in each recording."""
 LEFT = 0.1
 """Share of the motion that common numbers leave beyond what its own leave, from which a recording is of another
-actuator. Measured: of n = 4 windings hotter by 25, 50, 75 and 100 K the first two leave 0.04 and 0.095, the others 0.2."""
+actuator. Measured: of n = 4 windings hotter by 25, 50, 75 and 100 K two leave 0.04 and 0.095, two 0.2."""
 TIMES = 4.0
 """So many times what its own numbers leave are added to that: what they leave is missing physics, which bends them in
 each recording otherwise. Measured: n = 50 pairs of one actuator leave at most `LEFT` and half as many times."""
