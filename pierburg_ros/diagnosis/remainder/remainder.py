@@ -99,7 +99,7 @@ def _doubtful(stood: Supported, found: Found, deadline: Deadline) -> bool:
     if not (again or deadline.stopped):
         return False
     own = Estimator(found.data, stood.nominal).validation_misfit(stood.scored.fit)
-    share = CONFIRMED**2 if again else 1.0
+    share = BETTER**2 if again else 1.0
     return own > share * found.estimator.validation_misfit(found.recalibrated)
 
 
