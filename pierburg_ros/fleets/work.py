@@ -22,7 +22,7 @@ from pierburg_ros.recording import Channel, Recording
 LIBRARY = "../../plotly.min.js"
 """Where a recording's report finds the plotting library, which all reports of a fleet share."""
 SURE = 1.959963984540054
-"""Standard deviations to either side that hold 95 % of a normal distribution."""
+"""Standard deviations to either side that hold 95 % of a normal distribution. Given: the quantile of its table."""
 
 
 @dataclass(frozen=True)

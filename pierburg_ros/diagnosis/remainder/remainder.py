@@ -68,7 +68,7 @@ def remainder(
             fit, left_out = shared
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := around or _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
             if vouched is not None:
                 left_out, weights = dict.fromkeys(weights, vouched), {}
@@ -90,12 +90,17 @@ def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None
     return (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
-def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
-    """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
-    if deadline is None or not deadline.stopped:
+def _doubtful(stood: Supported, found: Found, deadline: Deadline) -> bool:
+    """Whether the recalibrated model does better on samples that validate, after a search that was stopped.
+
+    Where a simulation begins again and again an error there is no bad luck, and it has to do worse by a tenth.
+    """
+    again = any(run.shooting for run in found.data.runs)
+    if not (again or deadline.stopped):
         return False
-    own = Estimator(found.data, stood.nominal)
-    return own.validation_misfit(stood.scored.fit) > found.estimator.validation_misfit(found.recalibrated)
+    own = Estimator(found.data, stood.nominal).validation_misfit(stood.scored.fit)
+    share = BETTER**2 if again else 1.0
+    return own > share * found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

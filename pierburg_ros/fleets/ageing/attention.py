@@ -14,7 +14,7 @@ from pierburg_ros.pages.numbers import interval, value, words
 KINDS = ("a limit", "a trend", "a step", "unlike the rest", "nothing stands out")
 """The kinds of reason to look at a unit."""
 MONTH = 365.25 / 12.0
-"""Days of a month, in which changes are told."""
+"""Days of a month, in which changes are told. Given: a twelfth of the mean Julian year."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.fleets.run import Examined
 
 DAY = 86_400.0
-"""Seconds of a day, the unit of time of a course."""
+"""Seconds of a day, the unit of time of a course. Given: by the definition of the day."""
 EARLIEST = datetime(2000, 1, 1, tzinfo=timezone.utc).timestamp()
 """Time [s since 1970] before which a clock counts from its own start and tells no date. Chosen: no recording in one of
 the formats read here is older."""
