@@ -7,9 +7,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.deadline import Deadline
-from pierburg_ros.diagnosis.remainder.around import supported_around
+from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
 from pierburg_ros.diagnosis.remainder.confirmed import confirmed
-from pierburg_ros.diagnosis.remainder.left_out import LeftOut
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
@@ -51,22 +51,28 @@ def remainder(
 ) -> Remainder:
     """Physics beyond one explanation, and the shape of what is left.
 
-    Several recordings vouch for effects that each lower the error on recordings left out, a single one for quantities
-    that carry most of the evidence when it is counted against what remains. What is then left is fitted as a torque
-    over angle and velocity, kept where unseen data confirm it. After a search that was stopped nothing is named that
-    drift alone surpasses on samples that validate: what explains them together may not have been tried.
+    What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
+    on recordings left out, a single one for quantities that carry most of the evidence when it is counted against what
+    remains. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it. After a
+    search that was stopped nothing is named that drift alone surpasses on samples that validate: what explains them
+    together may not have been tried.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
     deadline = deadline or Deadline()
-    shared = shared_effects(found, progress, jobs, deadline.part(SHARED)) if data.several else None
+    around = supported_around(data, found.nominal, recalibrated)
+    vouched = vouched_around(data, found.nominal) if around and data.several else None
+    searched = data.several and vouched is None
+    shared = shared_effects(found, progress, jobs, deadline.part(SHARED)) if searched else None
     with workers(jobs, deadline) as pool:
         if shared is not None:
             fit, left_out = shared
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found, deadline):
             left_out, weights = {}, _by_effect(stood)
+            if vouched is not None:
+                left_out, weights = dict.fromkeys(weights, vouched), {}
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
@@ -81,17 +87,21 @@ def remainder(
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
-    around = supported_around(found.data, found.nominal, found.recalibrated)
-    return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
+    """What carries most of the evidence of a single recording."""
+    return (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
-def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
-    """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
-    if deadline is None or not deadline.stopped:
+def _doubtful(stood: Supported, found: Found, deadline: Deadline) -> bool:
+    """Whether the recalibrated model does better on samples that validate, after a search that was stopped.
+
+    Where a simulation begins again and again an error there is no bad luck, and it has to do worse by a tenth.
+    """
+    again = any(run.shooting for run in found.data.runs)
+    if not (again or deadline.stopped):
         return False
-    own = Estimator(found.data, stood.nominal)
-    return own.validation_misfit(stood.scored.fit) > found.estimator.validation_misfit(found.recalibrated)
+    own = Estimator(found.data, stood.nominal).validation_misfit(stood.scored.fit)
+    share = BETTER**2 if again else 1.0
+    return own > share * found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:
