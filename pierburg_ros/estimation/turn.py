@@ -54,7 +54,7 @@ def repeated(data: Data, model: Model) -> Balance | None:
     turning = [
         (run.inputs, run.time, run.measured, run.train)
         for run in data.runs
-        if goes_round(model, run.measured, run.quantity)
+        if run.train.any() and goes_round(model, run.measured, run.quantity)
     ]
     if not turning:
         return None
