@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,7 +107,7 @@ class _Motion:
     @staticmethod
     def of_all(motions: Sequence[_Motion]) -> _Motion:
         """One after the other."""
-        joined = {name: np.concatenate([getattr(motion, name) for motion in motions]) for name in SIGNALS}
+        joined: dict[str, Any] = {name: np.concatenate([getattr(each, name) for each in motions]) for name in SIGNALS}
         return replace(motions[0], **joined)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Flags
-from pierburg_ros.diagnosis.remainder.shared import BETTER, LeftOut
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.supported import Supported, Weight
