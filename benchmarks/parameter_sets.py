@@ -3,9 +3,9 @@
     python benchmarks/parameter_sets.py --count 1000000 --output parameter_sets.jsonl
 
 A set draws base parameters anywhere in their ranges and up to six effects up to `FAR` times what is plausible, ends
-included, starts anywhere on the travel, and runs the time of one travel through steps, reversals and an open bridge.
-A process that stays with one set longer than `HANGS` is ended. Called again with the
-same output it goes on; `--seed` shows one set again.
+included; pairs that contradict each other are put in order. It starts anywhere on the travel, and runs the time of one
+travel through steps, reversals and an open bridge. A process that stays with one set longer than `HANGS` is ended.
+Called again with the same output it goes on; `--seed` shows one set again.
 """
 
 from __future__ import annotations

@@ -53,11 +53,11 @@ def rows_of(name: str, changes: dict[str, float]) -> list[tuple[str, ...]]:
     """The loop with the settings as shipped and as tuned: plain, behind a predictor, and with a schedule beside."""
     model = Model.nominal().with_values(changes)
     late = dead_time(model) + lag(model) > 0.0
-    plain = task_for(model, Goal(), False)
+    plain = task_for(model, Goal(), False, False)
     rows = [row(name, "as shipped", plain, Settings()), row(name, "tuned", plain, tuned(plain))]
     behind = ", predictor" if late else ""
     if late:
-        predicting = task_for(model, Goal(), True)
+        predicting = task_for(model, Goal(), True, False)
         rows.append(row(name, "as shipped, predictor", predicting, start(predicting, Settings())))
         rows.append(row(name, "tuned, predictor", predicting, tuned(predicting)))
     scheduling = task_for(model, Goal(), late, True)

@@ -20,16 +20,18 @@ PIFLC = DESIGNS["PIFLC"]
 NO_PREDICTOR = {"predictor_delay": 0.0, "predictor_lag": 0.0}
 
 
-def task_for(model: Model, goal: Goal, predict: bool | None = None, schedule: bool = False) -> Task:
+def task_for(model: Model, goal: Goal, predict: bool | None = None, schedule: bool | None = None) -> Task:
     """The task of tuning the PIFLC for `model`, as it is and with its winding hot.
 
     Sensor and stops are those of the model. `predict` puts the predictor over its delay and lag; None: where it has
-    one. With `schedule` the search also finds which share of the duty that carries the load follows the setpoint.
+    one. With `schedule` the search also finds which share of the duty that carries the load follows the setpoint;
+    None: where there is nothing to predict.
     InputError where the model cannot be controlled by a duty from a Hall voltage.
     """
     refuse_uncontrolled(model)
-    if predict is None:
-        predict = dead_time(model) + lag(model) > 0.0
+    late = dead_time(model) + lag(model) > 0.0
+    predict = late if predict is None else predict
+    schedule = not late if schedule is None else schedule
     known = calibration(model) | (predictor(model, RATE) if predict else NO_PREDICTOR)
     known |= load(model) if schedule else {"load_share": 0.0}
     design = replace(PIFLC, tuned=PIFLC.tuned | (SCHEDULE if schedule else {}), fixed=known)

@@ -55,15 +55,10 @@ EFFECT: dict[str, Effect] = {effect.id: effect for effect in EFFECTS}
 """By id."""
 DECLARED: dict[str, Parameter] = {f"{effect.id}.{p.name}": p for effect in EFFECTS for p in effect.parameters}
 """Every parameter by dotted name."""
-ADDED: dict[str, tuple[str, ...]] = {
-    name: tuple(
-        f"{effect.id}.{effect.elsewhere.quantities[p.added_to]}"
-        for effect in EFFECTS
-        if p.added_to in effect.elsewhere.quantities
-    )
-    for name, p in DECLARED.items()
-    if p.added_to is not None
+_QUANTITIES = {
+    quantity: f"{effect.id}.{name}" for effect in EFFECTS for quantity, name in effect.elsewhere.quantities.items()
 }
+ADDED: dict[str, str] = {name: _QUANTITIES[p.added_to] for name, p in DECLARED.items() if p.added_to is not None}
 """What a parameter is added to and may at most cancel, by dotted names."""
 ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not None)
 """The effect of a converter."""

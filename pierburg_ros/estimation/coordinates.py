@@ -123,7 +123,7 @@ def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
 
 def least_added(name: str, values: Mapping[str, float], nominal: Model) -> float:
     """The least value of a parameter that may at most cancel what it is added to; what `values` lack is nominal."""
-    return 0.0 - sum(values.get(other, nominal.values[other]) for other in ADDED[name])
+    return 0.0 - values.get(ADDED[name], nominal.values[ADDED[name]])
 
 
 def without_effects(model: Model, effects: Iterable[str]) -> Model:

@@ -94,6 +94,16 @@ def test_the_predictor_can_be_left_out(lagging, tmp_path):
     assert read_parameter_file(tmp_path / "plain.yaml").predictor_lag == 0.0
 
 
+@pytest.mark.parametrize(("option", "scheduled"), [((), True), (("--no-schedule",), False)])
+def test_a_model_without_delay_or_lag_gets_a_schedule_unless_told_otherwise(option, scheduled, tmp_path, capsys):
+    model, file = tmp_path / "model.yaml", tmp_path / "controller.yaml"
+    model.write_text("actuator: pierburg\nparameters: {spring_preload: 0.35}\n")
+    assert run("--model", model, "-o", file, *option, *QUICK) == 0
+    settings = read_parameter_file(file)
+    assert (settings.load_closed > 0.12) is scheduled
+    assert settings.load_share == 0.0 or scheduled
+
+
 @pytest.mark.parametrize(
     ("options", "reason"),
     [

@@ -47,9 +47,12 @@ def test_the_number_of_threads_changes_no_bit(threads):
 
 
 @pytest.mark.parametrize("inductance", [1e-6, 1e-9, 1e-15])
-def test_a_winding_as_quick_as_one_likes_is_the_winding_without_inductance(inductance):
-    quick = simulate(NOMINAL.with_values({"armature_inductance.inductance": inductance}), STEPS, TIME)
-    assert np.abs(quick - simulate(NOMINAL, STEPS, TIME)).max() < 10.0 * max(inductance, 1e-8)
+@pytest.mark.parametrize("gear", [{}, {"backlash.gap": 0.2, "backlash.motor_friction_share": 0.4}])
+def test_a_winding_as_quick_as_one_likes_is_the_winding_without_inductance(gear, inductance):
+    slow = NOMINAL.with_values(gear)
+    quick = slow.with_values({"armature_inductance.inductance": inductance})
+    apart = np.abs(simulate(quick, STEPS, TIME) - simulate(slow, STEPS, TIME))
+    assert apart.max() < 10.0 * max(inductance, 1e-8)
 
 
 def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():

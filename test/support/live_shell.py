@@ -17,6 +17,7 @@ PATIENCE = 240.0
 CONTROL = re.compile(
     r"\x1b(\[[0-9;?=<>]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)|[()][A-Z0-9]|[=>78cM])|[\r\x08\x0f\x0e]"
 )
+"""What moves the cursor and sets colours and titles."""
 INTERACTIVE = {"bash": ["bash", "-i"], "zsh": ["zsh", "-i"], "fish": ["fish", "-i"]}
 RECORDED = {"bash": ".bashrc", "zsh": ".zshrc", "fish": ".config/fish/config.fish"}
 """The file that a shell reads when it starts, below the home folder."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Flags
-from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.supported import Supported, Weight
@@ -20,10 +20,6 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.torque_balance import Balance
 from pierburg_ros.estimation.turn import repeated, with_lesser_orders
 from pierburg_ros.plant import Model
-
-BETTER = 0.9
-"""Share of the error of the recalibrated model on samples that validate, to which a named effect with its overtones
-must bring it. Given: a name only where unseen data improve by a tenth."""
 
 
 @dataclass(frozen=True)

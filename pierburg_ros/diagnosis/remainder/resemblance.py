@@ -10,6 +10,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Discrepancy
+from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 
@@ -20,9 +21,6 @@ BLOCK = 21.0
 it remembers; not varied."""
 ORDERS = 30
 """Random orders that say what a variable explains by chance. Work: a mean of 30 is known to a fifth of their spread."""
-HIDDEN = 0.3
-"""What remains, over the noise, below which it is not told from it. Derived: it makes the error 4 % larger, and the
-noise estimate is that uncertain (`EXPLAINED`)."""
 CLEAR = 0.1
 """Least share of what remains, above chance, that makes a resemblance. Chosen: less helps nobody to look there; not
 varied."""
@@ -34,9 +32,9 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
     The variable over whose ranges the mean of the residual varies most, beyond what it does with the residual's blocks
     in random order.
     """
-    above = math.sqrt(max(rms(residual) ** 2 - data.noise**2, 0.0))
-    if above < HIDDEN * data.noise:
+    if rms(residual) < EXPLAINED * data.noise:
         return "nothing that is told from the noise"
+    above = math.sqrt(rms(residual) ** 2 - data.noise**2)
     size = f"{above:.2g} {data.actuator.unit}"
     motion = motion_of(run, data.actuator, data.noise)
     shares = {

@@ -12,7 +12,18 @@ from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.gear.rigid import joined, slide_joined
 from pierburg_ros.plant.motion.body import PARTED, balance, piece
-from pierburg_ros.plant.motion.events import even, hold, loaded, lower, motor_onset, onset, shortest, slide, upper
+from pierburg_ros.plant.motion.events import (
+    even,
+    hold,
+    loaded,
+    lower,
+    motor_onset,
+    onset,
+    shortest,
+    slide,
+    standing_time,
+    upper,
+)
 from pierburg_ros.plant.torques.drive import relaxed_current
 
 TURNS = 1e-4
@@ -160,10 +171,10 @@ def _bring_together(p, s, angle, flank):
 
 @kernel
 def _wait(p, s, remaining):
-    """Let the motor stand with its teeth parted: nothing of it moves but the current and the time."""
+    """Let the motor stand with its teeth parted, until the current sets it moving: only that and the time change."""
     step = remaining
     if p.armature_inductance.inductance != 0.0:
-        step = min(step, 0.1 * p.armature_inductance.inductance / p.armature_resistance)
+        step = standing_time(p, s, PARTED, remaining)
         s.current = relaxed_current(p, s, step)
     s.time += step
     return step

@@ -113,7 +113,7 @@ def hold(p, s, remaining):
         s.time += remaining
         s.steady = p.linear
         return remaining
-    step = _standing_time(p, s, even(p, s, remaining) if loaded(p) else remaining)
+    step = standing_time(p, s, JOINED, even(p, s, remaining) if loaded(p) else remaining)
     if inductive:
         s.current = relaxed_current(p, s, step)
     s.time += step
@@ -121,14 +121,14 @@ def hold(p, s, remaining):
 
 
 @kernel
-def _standing_time(p, s, step):
+def standing_time(p, s, kind, step):
     """How much of `step` [s] it stands: the current relaxes one way, so what does not move it at the end never did."""
-    if _onset_after(p, s, step) == 0.0:
+    if _onset_after(p, s, kind, step) == 0.0:
         return step
     early, late = 0.0, step
     for _ in range(40):
         middle = 0.5 * (early + late)
-        if _onset_after(p, s, middle) == 0.0:
+        if _onset_after(p, s, kind, middle) == 0.0:
             early = middle
         else:
             late = middle
@@ -136,8 +136,10 @@ def _standing_time(p, s, step):
 
 
 @kernel
-def _onset_after(p, s, step):
+def _onset_after(p, s, kind, step):
     amperes = relaxed_current(p, s, step) if p.armature_inductance.inductance != 0.0 else 0.0
+    if kind == PARTED:
+        return motor_onset(p, s, 0.0, amperes)
     return onset(p, s, s.time + step, amperes)
 
 
