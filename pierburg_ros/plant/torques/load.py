@@ -19,6 +19,10 @@ def ripple(p, motor_angle):
     return torque, cogging_torque.slope(p.cogging_torque, p.gear_ratio, motor_angle)
 
 
+UNPUSHED = (0.0, 0.0)
+"""What nothing from outside pushes: no torque [N.m], at no rate [N.m/s]."""
+
+
 @kernel
 def outside(p, s, time):
     """Torque [N.m] of a load from outside at `time` [s] and its rate [N.m/s]; the state keeps those of one moment."""
