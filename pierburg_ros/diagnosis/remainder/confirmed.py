@@ -11,6 +11,7 @@ import numpy as np
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, folds_of
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.run import Run
 
 
 def confirmed(shape: Shape, data: Data, pool: Executor) -> bool:
@@ -27,9 +28,10 @@ def confirmed(shape: Shape, data: Data, pool: Executor) -> bool:
 
 def _apart(fitted: Data, left: Data) -> Data:
     """Whole recordings train or validate."""
-    none, every = (lambda run: np.zeros_like(run.train)), (lambda run: np.ones_like(run.train))
-    runs = (
-        *(replace(run.trained_on(every(run)), validation=none(run)) for run in fitted.runs),
-        *(replace(run.trained_on(none(run)), validation=every(run)) for run in left.runs),
-    )
-    return replace(fitted, runs=runs)
+    return replace(fitted, runs=(*(_only(run, True) for run in fitted.runs), *(_only(run, False) for run in left.runs)))
+
+
+def _only(run: Run, trains: bool) -> Run:
+    """`run` with samples that all train, or all validate."""
+    train = np.full_like(run.train, trains)
+    return replace(run.trained_on(train), validation=~train)
