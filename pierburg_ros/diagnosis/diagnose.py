@@ -83,10 +83,9 @@ def examined(
     deadline: Deadline,
 ) -> tuple[Found, Remainder | None]:
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
-    rest, single = untouched(data, nominal, recordings), len(recordings) == 1
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-    turning = has_overtones(data, nominal)
-    if rest and not turning:
+    turning, single = has_overtones(data, nominal), len(recordings) == 1
+    if not turning and (rest := untouched(data, nominal, recordings)):
         # physics comes first
         found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)
         if verdict_on(found.chosen) != "unexplained":

@@ -28,13 +28,16 @@ def overtones(amplitude: float) -> dict[str, Any]:
     return {"angle": ANGLE, "velocity": np.zeros(1), "torque": torque, "period": 2.0 * np.pi}
 
 
-def data_on(model: Model) -> Data:
-    """A rotor that goes round several times under a current that wanders."""
+def data_on(*models: Model) -> Data:
+    """A rotor that goes round several times under a current that wanders, one recording of each model."""
+    return in_parts(data_of([recorded(model) for model in models], ROTOR))
+
+
+def recorded(model: Model) -> Recording:
     random = np.random.default_rng(4)
     current = 1.3 + 0.2 * np.interp(TIME, np.linspace(0.0, 8.0, 60), random.standard_normal(60))
     angle = simulate(model, Inputs(TIME, current), TIME, 0.3, 2.0) + 1e-4 * random.standard_normal(TIME.size)
-    recording = Recording("turns", "position", TIME, angle, Channel(TIME, current), input="current")
-    return in_parts(data_of([recording], ROTOR))
+    return Recording("turns", "position", TIME, angle, Channel(TIME, current), input="current")
 
 
 @pytest.fixture(scope="module")
@@ -69,3 +72,9 @@ def test_a_sine_alone_has_no_overtones_and_a_plain_rotor_no_map() -> None:
     plain = data_on(ROTOR)
     assert with_turn(plain, ROTOR) is None
     assert with_lesser_orders(plain, ROTOR) is ROTOR
+
+
+def test_what_one_of_several_recordings_shows_repeats_itself_in_none() -> None:
+    true = ROTOR.with_values(RIPPLE).with_residual(overtones(0.003))
+    assert has_overtones(data_on(true, true), ROTOR)
+    assert not has_overtones(data_on(true, ROTOR), ROTOR)
