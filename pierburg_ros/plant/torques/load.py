@@ -19,10 +19,6 @@ def ripple(p, motor_angle):
     return torque, cogging_torque.slope(p.cogging_torque, p.gear_ratio, motor_angle)
 
 
-UNPUSHED = (0.0, 0.0)
-"""What nothing from outside pushes: no torque [N.m], at no rate [N.m/s]."""
-
-
 @kernel
 def outside(p, s, time):
     """Torque [N.m] of a load from outside at `time` [s] and its rate [N.m/s]; the state keeps those of one moment."""
@@ -66,6 +62,13 @@ def load(p, angle, velocity, pushed):
         by_angle += slope_angle
         by_velocity += slope_velocity
     return torque, by_angle, by_velocity, pushed[1]
+
+
+@kernel
+def load_at(p, angle, velocity, time):
+    """Load torque of the shaft [N.m], positive closes, at `time` [s]."""
+    pushed = external_load.torque(p.external_load, time), external_load.rate(p.external_load, time)
+    return load(p, angle, velocity, pushed)[0]
 
 
 @kernel
