@@ -63,10 +63,11 @@ colcon: $(COLCON)/.installed
 	PIERBURG_INSTALL_SPACE=$(CURDIR)/build/install $(BIN)/python -m pytest test/nodes/test_install_space.py
 
 # The quick tests with the oldest versions that setup.py allows: with Python 3.12, ROS 2 Jazzy's, if it is there.
+# Of pyarrow, 21 still takes the oldest NumPy.
 lowest:
 	@test -x build/lowest/bin/python || $(LOWEST_PYTHON) -m venv build/lowest
 	build/lowest/bin/python -m pip install --quiet 'setuptools>=70.1'
-	build/lowest/bin/python -m pip install --quiet --no-build-isolation --editable '.[test]' --constraint constraints/lowest.txt
+	build/lowest/bin/python -m pip install --quiet --no-build-isolation --editable '.[test]' 'pyarrow<22' --constraint constraints/lowest.txt
 	build/lowest/bin/python -m pytest -n auto --dist loadfile -m 'not ros and not search'
 
 # The source distribution, installed into an environment of its own and run there, away from the sources.

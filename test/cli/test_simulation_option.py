@@ -55,7 +55,7 @@ def test_other_options_keep_their_values():
     ("arguments", "line"),
     [
         (("real.csv", "--output", "out", "--simulation", "none.csv"), "none.csv"),
-        (("--output", "out", "--simulation", "one.csv", "real.csv"), "Missing argument 'recordings'"),
+        (("--output", "out", "--simulation", "one.csv", "real.csv"), "Missing argument '"),
         (("real.csv", "--output", "out", "--simulation-signals", "m.yaml"), "without --simulation"),
     ],
 )

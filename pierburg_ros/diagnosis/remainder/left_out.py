@@ -13,7 +13,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.search.race import ROUNDS
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.likelihood import repetition
+from pierburg_ros.estimation.likelihood import SURE, repetition
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.plant import Model
 
@@ -47,11 +47,13 @@ class LeftOut:
 @dataclass(frozen=True)
 class Parts:
     """What a fit leaves of each part when it is fitted to the others: RMSE [noise] and independent stretches, shape
-    (parts,); and how improbable its values are, in -2 log probability."""
+    (parts,); how improbable its values are, in -2 log probability, and whether each value of its effects is one that 95
+    of 100 actuators have."""
 
     errors: Signal
     stretches: Signal
     improbable: float
+    plausible: bool = True
 
     @property
     def mean(self) -> float:
@@ -88,7 +90,8 @@ def parts_of(nominal: Model, folds: Folds, fit: Fit, over: Map = map) -> Parts:
     errors, stretches = zip(*over(left_of, folds), strict=True)
     coordinates = Estimator(folds[0][0], nominal).coordinates(fit.explanation)
     rows = improbability(coordinates, coordinates.point(fit.values))
-    return Parts(np.array(errors), np.array(stretches), float(rows @ rows))
+    plausible = bool(np.all(np.abs(rows[len(fit.explanation.drifted) :]) <= SURE))
+    return Parts(np.array(errors), np.array(stretches), float(rows @ rows), plausible)
 
 
 def gain(smaller: Parts, larger: Parts) -> float:

@@ -3,7 +3,8 @@
 A real actuator lacks more than one thing, and with a low noise floor nothing is ever adequate. An effect is
 then believed if, fitted on the other recordings, it lowers the error on the recordings left out. What remains counts
 by its independent stretches, not by its samples, so that what is known of the values beforehand has its say. The same
-score takes an effect out again once those added after it leave nothing for it to do: it had stood in for them.
+score takes an effect out again once those added after it leave nothing for it to do: it had stood in for them. An
+effect that bends easily stands in with values that no actuator has; then it is not believed, whatever it gains.
 """
 
 from __future__ import annotations
@@ -113,16 +114,17 @@ def _rounds(bench: Bench, found: Found, progress: Progress) -> Iterator[Round]:
     yield last
     added = set[str]()
     while tasks := [task for task in _tasks(bench, found, last.fit) if task[0].effects[-1] not in added]:
-        fits = _grown(bench, last.fit, tasks)
-        left_out = [bench.parts(fit) for fit in fits]
-        gains = [gain(last.parts, each) for each in left_out]
-        best = int(np.argmax(gains))
-        progress(fits[best].explanation.label)
-        if not helps(last.parts, left_out[best], len(tasks)):
+        tried = [(bench.parts(fit), fit) for fit in _grown(bench, last.fit, tasks)]
+        believed = [each for each in tried if each[0].plausible and helps(last.parts, each[0], len(tasks))]
+        if not believed:
             break
-        added.add(fits[best].explanation.effects[-1])
-        last = thinned(bench, _with_last(bench, last, fits[best]), len(tasks))
-        yield last
+        _, fit = max(believed, key=lambda each: gain(last.parts, each[0]))
+        progress(fit.explanation.label)
+        added.add(fit.explanation.effects[-1])
+        larger = _with_last(bench, last, fit)
+        if larger.parts.plausible:
+            last = thinned(bench, larger, len(tasks))
+            yield last
 
 
 def _first(bench: Bench, found: Found) -> Round:

@@ -4,9 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from support.recordings import data_on, recording
+from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.left_out import FOLDS, Parts, by_chance, folds_of, gain, helps, said_of
+from pierburg_ros.diagnosis.remainder.left_out import FOLDS, Parts, by_chance, folds_of, gain, helps, parts_of, said_of
+from pierburg_ros.estimation.data import all_training
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation, Variant
 
 
 def parts(*errors: float, stretches: float = 10.0, improbable: float = 0.0) -> Parts:
@@ -29,6 +32,14 @@ def test_an_effect_has_to_gain_more_than_chance_and_a_tenth_of_the_error() -> No
     assert not helps(before, parts(0.92, 0.92, 0.92, stretches=1000.0), 20)
     assert not helps(before, parts(0.8, 0.8, 0.8, stretches=1.0), 20)
     assert not helps(before, parts(0.5, 0.5, 0.5, stretches=10.0, improbable=40.0), 20)
+
+
+@pytest.mark.parametrize(("time", "plausible"), [(0.01, True), (2.0, False)])
+def test_values_that_no_actuator_has_are_told(time: float, plausible: bool) -> None:
+    data = all_training(data_on(*(recording({}, duration=2.0, seed=seed) for seed in range(2))))
+    lag = Explanation(variants=(Variant("sensor_lag", ("time_constant",)),))
+    fit = Estimator(data, NOMINAL).at(lag, {"sensor_lag.time_constant": time})
+    assert parts_of(NOMINAL, folds_of(data), fit).plausible == plausible
 
 
 def test_every_recording_is_left_out_once() -> None:
