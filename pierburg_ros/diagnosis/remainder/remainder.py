@@ -53,9 +53,8 @@ def remainder(
     """Physics beyond one explanation, and the shape of what is left.
 
     Several recordings vouch for effects that each lower the error on recordings left out, a single one for quantities
-    that carry most of the evidence when it is counted against what remains. What is then left is fitted as a torque
-    over angle and velocity, kept where unseen data confirm it. After a search that was stopped nothing is named that
-    drift alone surpasses on samples that validate: what explains them together may not have been tried.
+    that unseen samples confirm when the evidence is counted against what remains. What is then left is fitted as a
+    torque over angle and velocity, kept where unseen data confirm it.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
@@ -66,7 +65,7 @@ def remainder(
             fit, left_out = shared
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := _stood(found, pool, progress)) and not _hasty(stood, found, deadline):
+        elif stood := _stood(found, pool, progress):
             left_out, weights = {}, _by_effect(stood)
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
@@ -82,17 +81,9 @@ def remainder(
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What a single recording supports: what repeats itself with every turn, or what carries most of the evidence."""
+    """What a single recording supports: what repeats itself with every turn, or what unseen samples confirm."""
     around = supported_around(found.data, found.nominal, found.recalibrated)
     return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
-
-
-def _hasty(stood: Supported, found: Found, deadline: Deadline | None) -> bool:
-    """Whether the search was stopped, and the recalibrated model does better on samples that validate."""
-    if deadline is None or not deadline.stopped:
-        return False
-    own = Estimator(found.data, stood.nominal)
-    return own.validation_misfit(stood.scored.fit) > found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:
