@@ -60,7 +60,8 @@ class Shooting:
         first = _first_samples(time, length)
         noise = noise_of(time, measured)
         found = np.array([_local(time, measured, sample, noise) for sample in first.tolist()])
-        return Shooting(first, *found.T, length)
+        level, rate, curvature, level_error, rate_error, curvature_error = found.T
+        return Shooting(first, level, rate, curvature, level_error, rate_error, curvature_error, length)
 
     def simulated(self, model: Model, inputs: Inputs, time: Signal, measured: Signal, quantity: str) -> Signal:
         """What a model measures, each stretch from the beginning that suits its samples best, shape (samples,)."""
