@@ -20,8 +20,8 @@ from fleet_simulation import AGEING, BEGIN, REPAIR, YEAR, simulate
 from machine import machine, write_section
 
 import pierburg_ros as pr
-from pierburg_ros.fleets.ageing import Ageing, ageing
-from pierburg_ros.fleets.course import Course
+from pierburg_ros.fleets.ageing.ageing import Ageing, ageing
+from pierburg_ros.fleets.ageing.course import Course
 from pierburg_ros.fleets.fleet import Fleet
 from pierburg_ros.proof.intervals import Share
 

@@ -3,8 +3,9 @@
     python benchmarks/parameter_sets.py --count 1000000 --output parameter_sets.jsonl
 
 A set draws base parameters anywhere in their ranges and up to six effects up to `FAR` times what is plausible, ends
-included, and runs half a second of steps, reversals and an open bridge at 500 Hz. A process that stays with one set
-longer than `HANGS` is ended. Called again with the same output it goes on; `--seed` shows one set again.
+included; pairs that contradict each other are put in order. It starts anywhere on the travel, and runs the time of one
+travel through steps, reversals and an open bridge. A process that stays with one set longer than `HANGS` is ended.
+Called again with the same output it goes on; `--seed` shows one set again.
 """
 
 from __future__ import annotations
@@ -16,17 +17,22 @@ import multiprocessing
 import os
 import time
 from collections import Counter
+from functools import cache
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 BATCH = 1000
-SLOW = 3.0
-"""Processor time [s] for half a second of motion: its own length, the burst that is allowed, and as much again."""
+SLOW = 2.5
+"""Processor time [s] for the time of one travel: the burst that is allowed, and as much again."""
 HANGS = 60.0
 MOST_EFFECTS = 6
 FAR = 1000.0
 """Reach of an effect's parameters, in multiples of what is plausible."""
+CHANGES = 8
+"""Changes of the duty in a run."""
+DUTIES = (-1.0, -0.3, 0.0, 0.1, 0.24, 0.5, 1.0)
+SAMPLES = 51
 
 
 def main() -> None:
@@ -120,41 +126,63 @@ def tried(seed: int) -> dict[str, Any]:
     """How the run of one set ends: numbers, slow, or not a number from some sample on."""
     import numpy as np
 
-    from pierburg_ros.plant import Inputs, simulate
+    from pierburg_ros.plant import simulate
 
     model, values = drawn(seed)
-    random = np.random.default_rng(seed + 1)
-    time_of = np.arange(10) * 0.05
-    duty = random.choice([-1.0, -0.3, 0.0, 0.1, 0.24, 0.5, 1.0], 10)
-    inputs = Inputs(time_of, duty, enabled=random.random(10) > 0.1)
+    inputs, times, angle, velocity = driven(seed, model)
     began = time.process_time()
-    output = simulate(model, inputs, np.arange(251) * 0.002)
+    output = simulate(model, inputs, times, angle, velocity)
     duration = time.process_time() - began
     missing = int(np.count_nonzero(~np.isfinite(output)))
     how = "not a number" if missing else "slow" if duration > SLOW else "numbers"
     return {"seed": seed, "how": how, "missing": missing, "duration": duration, "values": values}
 
 
+def driven(seed: int, model: Any) -> tuple[Any, Any, float, float]:
+    """Inputs, sample times [s], angle [rad] and velocity [rad/s] at the start: anywhere, in the time of one travel."""
+    import numpy as np
+
+    from pierburg_ros.plant import Inputs
+
+    random = np.random.default_rng([seed, 1])
+    own, actuator = model.scales, model.actuator
+    changes = np.sort(random.uniform(-0.1, 1.0, CHANGES)) * own.time
+    duty = random.choice(DUTIES, CHANGES)
+    inputs = Inputs(changes, duty, enabled=random.random(CHANGES) > 0.1)
+    lower, upper = max(actuator.lower_stop, -own.angle), min(actuator.upper_stop, own.angle)
+    velocity = random.uniform(-1.0, 1.0) * own.angle / own.time if random.random() < 0.3 else 0.0
+    return inputs, np.linspace(0.0, own.time, SAMPLES), float(random.uniform(lower, upper)), velocity
+
+
 def drawn(seed: int) -> tuple[Any, dict[str, float]]:
     """A model anywhere in its ranges, and the values that differ from nominal."""
     import numpy as np
 
-    from pierburg_ros.actuators import read_actuator
     from pierburg_ros.effects import EFFECTS
     from pierburg_ros.errors import InputError
-    from pierburg_ros.plant import Model
+    from pierburg_ros.estimation.coordinates import in_order
 
     random = np.random.default_rng(seed)
-    nominal = Model.nominal(read_actuator(("pierburg", "xl330")[seed % 2]))
+    nominal = described(("pierburg", "xl330")[seed % 2])
     while True:
         names = [name for name in nominal.actuator.parameters if random.random() < 0.5]
         for index in random.permutation(len(EFFECTS))[: random.integers(0, MOST_EFFECTS + 1)]:
             names += [f"{EFFECTS[index].id}.{name}" for name in EFFECTS[index].names]
         values = {name: anywhere(random, *reach(nominal, name), choices(name)) for name in names}
         try:
+            values = in_order(values, nominal)
             return nominal.with_values(values), values
         except InputError:
             continue
+
+
+@cache
+def described(name: str) -> Any:
+    """An actuator of the package as described."""
+    from pierburg_ros.actuators import read_actuator
+    from pierburg_ros.plant import Model
+
+    return Model.nominal(read_actuator(name))
 
 
 def reach(nominal: Any, name: str) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from math import degrees
 from pathlib import Path
 
 from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
+from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.goal import Goal
 from pierburg_ros.closed_loop.judgement import judge
 from pierburg_ros.closed_loop.plants import HOT, NOMINAL
@@ -36,27 +37,31 @@ MODELS = {
     },
 }
 """Corrected models like those that a diagnosis of the practice recordings gives, and the values they change."""
-HEADER = ("plant", "controller", "settling [ms]", "overshoot [%]", "error [°]", "hunting [°]", "hot: overshoot [%]")
+HEADER = ("plant", "controller", "settling [ms]", "overshoot [%]", "error [°]", "hunting [°]")
+HEADER += ("hot: settling [ms]", "hot: overshoot [%]", "cost")
 
 
 def main() -> None:
     """Tune for every model, and replace the table."""
     rows = [row for name, changes in MODELS.items() for row in rows_of(name, changes)]
-    table = "\n".join(f"| {' | '.join(row)} |" for row in (HEADER, ["---", "---", *["---:"] * 5], *rows))
+    table = "\n".join(f"| {' | '.join(row)} |" for row in (HEADER, ["---", "---", *["---:"] * 7], *rows))
     before, _, rest = DOCUMENT.read_text(encoding="utf-8").partition(BEGIN)
     write_whole(DOCUMENT, f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.partition(END)[2]}")
 
 
 def rows_of(name: str, changes: dict[str, float]) -> list[tuple[str, ...]]:
-    """The loop with the settings as shipped, with these behind a predictor, tuned without one, and tuned with one."""
+    """The loop with the settings as shipped and as tuned: plain, behind a predictor, and with a schedule beside."""
     model = Model.nominal().with_values(changes)
     late = dead_time(model) + lag(model) > 0.0
-    plain = task_for(model, Goal(), False)
+    plain = task_for(model, Goal(), False, False)
     rows = [row(name, "as shipped", plain, Settings()), row(name, "tuned", plain, tuned(plain))]
+    behind = ", predictor" if late else ""
     if late:
-        predicting = task_for(model, Goal(), True)
+        predicting = task_for(model, Goal(), True, False)
         rows.append(row(name, "as shipped, predictor", predicting, start(predicting, Settings())))
         rows.append(row(name, "tuned, predictor", predicting, tuned(predicting)))
+    scheduling = task_for(model, Goal(), late, True)
+    rows.append(row(name, f"tuned{behind}, schedule", scheduling, tuned(scheduling)))
     return rows
 
 
@@ -68,7 +73,10 @@ def tuned(task: Task) -> Settings:
 def row(name: str, controller: str, task: Task, settings: Settings) -> tuple[str, ...]:
     """What the loop promises at its worst step."""
     found = promises(judge(task.design, settings, task.plants))
-    return name, controller, *numbers(found[NOMINAL]), f"{100 * found[HOT].overshoot:.1f}"
+    hot = found[HOT]
+    cost = task.cost(settings, Course())
+    last = f"{1e3 * hot.settling:.0f}", f"{100 * hot.overshoot:.1f}", f"{cost:.2f}"
+    return name, controller, *numbers(found[NOMINAL]), *last
 
 
 def numbers(promise: Promise) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from pierburg_ros.nodes.core.policy import Rights, policy
-from pierburg_ros.nodes.graph_rights import rights_of
+from pierburg_ros.nodes.graph.rights import rights_of
 from pierburg_ros.processes import end, own_graph, start_node
 
 FOLDER = Path(__file__).parent

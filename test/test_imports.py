@@ -57,6 +57,7 @@ ALLOWED["__main__"] = {"cli"}
 ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {
+    "cli": {"console": set(), "options": {"console"}},
     "diagnosis": {
         "schema": set(),
         "cleaning": set(),
@@ -70,15 +71,22 @@ ROOMS = {
         "result": {"schema"},
         "report": {"schema", "evidence", "search", "location", "remainder", "limits", "verdict", "result"},
     },
+    "fleets": {"recordings": set(), "ageing": {"run"}},
     "identification": {
         "fit": set(),
         "identifiability": {"fit"},
         "paper": {"fit"},
-        "identify": {"fit", "identifiability", "paper"},
+        "reach": {"fit"},
+        "identify": {"fit", "identifiability", "paper", "reach"},
         "experiment": {"fit", "identify", "paper"},
         "description": {"fit", "identifiability", "identify"},
     },
-    "nodes": {"core": set()},
+    "nodes": {
+        "core": set(),
+        "graph": {"core"},
+        "recording": {"core", "graph"},
+        "reports": {"core", "graph"},
+    },
     "plant": {
         "parameters": set(),
         "model": {"parameters"},

@@ -27,7 +27,7 @@ def test_it_is_a_tree_of_links_with_one_root():
 
 
 def test_the_joint_is_the_one_in_joint_states():
-    messages = pytest.importorskip("pierburg_ros.nodes.messages")
+    messages = pytest.importorskip("pierburg_ros.nodes.graph.messages")
     assert JOINT.attrib["name"] == messages.SHAFT
     assert JOINT.attrib["type"] == "revolute"
 

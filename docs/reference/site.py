@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-PAGE = re.compile(r"^- \[(.+?)\]\((.+?)\.md\)", flags=re.MULTILINE)
+PAGE = re.compile(r"\[([^\]]+)\]\(([^)]+)\.md\)")
 
 
 def with_contents(index: str) -> str:
@@ -15,7 +15,7 @@ def with_contents(index: str) -> str:
 
 
 def _contents(section: str) -> str:
-    pages = "\n".join(f"{title} <{page}>" for title, page in PAGE.findall(section))
+    pages = "\n".join(f"{title[0].upper()}{title[1:]} <{page}>" for title, page in PAGE.findall(section))
     return f"```{{toctree}}\n:hidden:\n:caption: {section.splitlines()[0]}\n\n{pages}\n```"
 
 

@@ -6,8 +6,16 @@ from pierburg_ros.actuators.actuator import Actuator
 
 FACTOR = {"torque": "torque_scale", "current": "torque_constant"}
 """What multiplies the input, by the drive."""
+GEAR = "gear_ratio"
+"""What multiplies it as well."""
 TORQUES = ("N.m", "kg.m^2")
 """How units of a torque, and of what turns motion into one, begin."""
+
+
+def scaling(actuator: Actuator) -> tuple[str, ...]:
+    """What multiplies the input of an actuator and nothing else; none where a voltage drives it."""
+    factor = FACTOR.get(actuator.drive)
+    return tuple(name for name in (factor, GEAR) if factor and name in actuator.parameters)
 
 
 def in_ratio(actuator: Actuator, name: str) -> tuple[str, ...]:

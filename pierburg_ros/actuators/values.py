@@ -7,7 +7,7 @@ from dataclasses import replace
 from numbers import Real
 
 from pierburg_ros.actuators.actuator import Actuator
-from pierburg_ros.effects import DECLARED, EFFECTS
+from pierburg_ros.effects import ADDED, DECLARED, EFFECTS
 from pierburg_ros.errors import InputError, near
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
@@ -67,6 +67,12 @@ def check_together(actuator: Actuator, values: Mapping[str, float]) -> None:
             )
         if declared.below is not None and value >= values[declared.below]:
             raise InputError(f"{name} is {value:g}; expected less than {declared.below}, {values[declared.below]:g}.")
+    for name, other in ADDED.items():
+        if values[name] < -values[other]:
+            raise InputError(
+                f"{name} is {values[name]:g} and {other} {values[other]:g}; expected a sum of at least 0, since"
+                " friction does not drive. Change both together."
+            )
     ends = [values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
     if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):
         raise InputError(

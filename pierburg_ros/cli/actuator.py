@@ -12,9 +12,9 @@ from rich.console import Console
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.actuators.writing import description_text
-from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import JobsOption
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.description.derived import derived
 from pierburg_ros.identification.description.questions import Question, answered

@@ -21,7 +21,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pierburg_ros.cli.endings import INTERRUPTED, SIGNALS, TERMINATED, Terminated, refuse, terminable, usage
+from pierburg_ros.cli.console.endings import INTERRUPTED, SIGNALS, TERMINATED, Terminated, refuse, terminable, usage
 from pierburg_ros.errors import InputError
 
 SPREAD = ("--simulation",)
@@ -168,7 +168,7 @@ def application(called: str | None = None) -> typer.Typer:
 
 def command_of(name: str) -> Callable[..., None]:
     """The function of a command, with the options that all commands have."""
-    from pierburg_ros.cli.common import with_common
+    from pierburg_ros.cli.options.common import with_common
 
     return with_common(getattr(import_module(f"pierburg_ros.cli.{name}"), name))
 

@@ -11,12 +11,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
-from pierburg_ros.cli.progress import Step, progress
 from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.control import Controller
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.library.comparing import Comparison, compare

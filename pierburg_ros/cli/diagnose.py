@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
-from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.cli.viewers import RerunOption
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.options.viewers import RerunOption
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.diagnosis.search.tried import Tried
 from pierburg_ros.errors import InputError
@@ -45,9 +45,7 @@ def diagnose(
     time: TimeOption = None,
     rerun: RerunOption = None,
     jobs: JobsOption = None,
-    budget: Annotated[float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet.")] = (
-        USUAL_BUDGET
-    ),
+    budget: BudgetOption = USUAL_BUDGET,
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> str:

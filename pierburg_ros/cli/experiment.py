@@ -11,11 +11,11 @@ import typer
 from rich.console import Console
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.graph_experiment import play
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.control import Schedule, Settings
 from pierburg_ros.errors import InputError

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.model import Model
 

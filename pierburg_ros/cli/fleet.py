@@ -8,11 +8,11 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption, SchedulerOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.fleets.fleet import fleet as fleet_found
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
@@ -40,9 +40,7 @@ def fleet(
     time: TimeOption = None,
     jobs: JobsOption = None,
     scheduler: SchedulerOption = None,
-    budget: Annotated[
-        float, typer.Option(min=1.0, help="Seconds of an idle machine for the best verdict yet on each recording.")
-    ] = USUAL_BUDGET,
+    budget: BudgetOption = USUAL_BUDGET,
 ) -> str:
     """Diagnose many recordings of many actuators; say how each ages, and which to look at first.
 

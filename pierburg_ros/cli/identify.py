@@ -9,11 +9,18 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from pierburg_ros.cli.jobs import JobsOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import JobsOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.options.recordings import (
+    SignalsOption,
+    TimeOption,
+    TopicOption,
+    faults_first,
+    losses_first,
+    topics_of,
+)
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.paper.table_one import audit as audit_checks

@@ -10,8 +10,8 @@ import typer
 from rich.console import Console
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Model
@@ -41,16 +41,18 @@ def inspect(
     found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
     if write_signals is not None:
         write(write_signals, found.signals)
-    shown(terminal(), recording, found, actuator, write_signals)
+    shown(terminal(), recording, found, actuator, write_signals, mapped=signals is not None)
     return found.as_mapping()
 
 
-def shown(console: Console, recording: Path, found: Inspection, actuator: str | None, written: Path | None) -> None:
+def shown(
+    console: Console, recording: Path, found: Inspection, actuator: str | None, written: Path | None, mapped: bool
+) -> None:
     """Print what was found, what it is read as, and what to do next."""
     if found.recording is not None and found.recording.warning:
         console.print(found.recording.warning, soft_wrap=True)
     console.print(table(found))
-    console.print("\n".join(numbers(found)), soft_wrap=True)
+    console.print("\n".join(numbers(found, mapped)), soft_wrap=True)
     console.print(read_as(found), soft_wrap=True)
     if found.recording is not None and actuator is not None:
         faults_first(console, [found.recording], Model.nominal(read_actuator(actuator)))
@@ -91,9 +93,11 @@ def row(topic: TopicContent) -> tuple[str, ...]:
     )
 
 
-def numbers(found: Inspection) -> Iterator[str]:
-    """A line for each number of each topic: its path, its range, what it could be."""
+def numbers(found: Inspection, mapped: bool) -> Iterator[str]:
+    """A line for each number of each topic: its path, its range, what it could be; none for what a map has settled."""
     for topic in found.topics:
+        if mapped and topic.read_as:
+            continue
         for field in topic.fields[:FIELDS]:
             limits = "no number" if field.minimum is None else f"{field.minimum:.4g} to {field.maximum:.4g}"
             yield f"{topic.name} {field.path}".rstrip() + f"  {field.could_be or limits}"

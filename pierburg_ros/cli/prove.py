@@ -10,13 +10,13 @@ from typing import Annotated, Any
 import typer
 
 from pierburg_ros.cli import prove_real
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption
-from pierburg_ros.cli.progress import Step, Tell, progress
-from pierburg_ros.cli.prove_real import BudgetOption, LevelOption, RealOption
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption
+from pierburg_ros.cli.console.progress import Step, Tell, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption, SchedulerOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption
+from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption
+from pierburg_ros.cli.prove_real import LevelOption, RealOption
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.cli.terminal import terminal
 from pierburg_ros.errors import InputError
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.proof import document, run

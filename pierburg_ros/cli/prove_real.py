@@ -9,10 +9,10 @@ from typing import Annotated, Any
 
 import typer
 
-from pierburg_ros.cli.models import chosen_model
-from pierburg_ros.cli.progress import Step, Tell, progress
-from pierburg_ros.cli.recordings import topics_of
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, Tell, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.models import chosen_model
+from pierburg_ros.cli.options.recordings import topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.reading import read
@@ -29,14 +29,6 @@ RealOption = Annotated[
 LevelOption = Annotated[
     list[str] | None,
     typer.Option(help=f"With --real: only this strength ({', '.join(LEVELS)}); may be repeated."),
-]
-BudgetOption = Annotated[
-    float | None,
-    typer.Option(
-        min=1.0,
-        show_default=f"{USUAL_BUDGET:g}",
-        help="With --real: seconds of an idle machine for each recording that is diagnosed.",
-    ),
 ]
 
 

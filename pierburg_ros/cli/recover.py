@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.recording.formats.recover import is_whole
 from pierburg_ros.recording.formats.recover import recover as recovered_copy
 

@@ -7,10 +7,17 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.recordings import SignalsOption, TimeOption, TopicOption, faults_first, losses_first, topics_of
-from pierburg_ros.cli.terminal import terminal
-from pierburg_ros.cli.viewers import RerunOption
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
+from pierburg_ros.cli.options.recordings import (
+    SignalsOption,
+    TimeOption,
+    TopicOption,
+    faults_first,
+    losses_first,
+    topics_of,
+)
+from pierburg_ros.cli.options.viewers import RerunOption
 from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result

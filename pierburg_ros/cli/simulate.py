@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.errors import InputError
 from pierburg_ros.library import simulation
 

@@ -12,15 +12,15 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.cli.jobs import JobsOption, SchedulerOption
-from pierburg_ros.cli.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.progress import Step, progress
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.progress import Step, progress
+from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.jobs import JobsOption, SchedulerOption
+from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
 from pierburg_ros.closed_loop.judgement import Judgement, judge
-from pierburg_ros.closed_loop.plants import plant_set
+from pierburg_ros.closed_loop.plants import NOMINAL, plant_set
 from pierburg_ros.closed_loop.report import insert, report
 from pierburg_ros.closed_loop.tune import STATED, Task
 from pierburg_ros.closed_loop.tune import tune as find_settings
@@ -55,6 +55,13 @@ def tune(
         bool | None,
         typer.Option("--predictor/--no-predictor", help="Smith predictor; default: where the model has delay or lag."),
     ] = None,
+    schedule: Annotated[
+        bool | None,
+        typer.Option(
+            "--schedule/--no-schedule",
+            help="Duty for the load, scheduled over the setpoint; default: where the model has no delay or lag.",
+        ),
+    ] = None,
     compare: Annotated[
         Path | None,
         typer.Option(help="Tune a plain PI and a PID as well; write the comparison into this Markdown file."),
@@ -76,10 +83,10 @@ def tune(
     effort = Effort(generations, members, seed, jobs)
     if model is not None or actuator is not None:
         refuse_for_one_plant({"--compare": compare, "--scheduler": scheduler})
-        task = task_for(chosen_model(model, actuator), goal, predictor)
+        task = task_for(chosen_model(model, actuator), goal, predictor, schedule)
         return retuned(task, in_use, effort, output)
-    if predictor is not None or controller is not None:
-        raise InputError("Found --predictor or --controller without a model, expected one. Add --model model.yaml.")
+    if predictor is not None or controller is not None or schedule is not None:
+        raise InputError("Found --predictor, --schedule or --controller, but no model. Add --model model.yaml.")
     names = ["PIFLC"] if compare is None else list(DESIGNS)
     if scheduler is None:
         plants = plant_set()
@@ -128,7 +135,7 @@ def outlook(before: Mapping[str, Promise], after: Mapping[str, Promise]) -> List
     """What the loop does at its worst step on each plant, before and after."""
     rows = [
         (
-            plant,
+            "the model as it is" if plant == NOMINAL else plant,
             f"{1e3 * was.settling:.0f} -> {1e3 * will.settling:.0f}",
             f"{100.0 * was.overshoot:.1f} -> {100.0 * will.overshoot:.1f}",
             f"{math.degrees(was.steady_state_error):.2f} -> {math.degrees(will.steady_state_error):.2f}",

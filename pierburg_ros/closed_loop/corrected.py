@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from pierburg_ros.closed_loop.designs import DESIGNS
+from pierburg_ros.closed_loop.designs import DESIGNS, SCHEDULE
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
 from pierburg_ros.closed_loop.judgement import Judgement
+from pierburg_ros.closed_loop.load import load
 from pierburg_ros.closed_loop.plants import HOT, NOMINAL, variations
 from pierburg_ros.closed_loop.predictor import dead_time, lag, predictor
 from pierburg_ros.closed_loop.tune import RATE, Task
@@ -16,20 +17,25 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
 
 PIFLC = DESIGNS["PIFLC"]
+NO_PREDICTOR = {"predictor_delay": 0.0, "predictor_lag": 0.0}
 
 
-def task_for(model: Model, goal: Goal, predict: bool | None = None) -> Task:
+def task_for(model: Model, goal: Goal, predict: bool | None = None, schedule: bool | None = None) -> Task:
     """The task of tuning the PIFLC for `model`, as it is and with its winding hot.
 
     Sensor and stops are those of the model. `predict` puts the predictor over its delay and lag; None: where it has
-    one.
+    one. With `schedule` the search also finds which share of the duty that carries the load follows the setpoint;
+    None: where there is nothing to predict.
     InputError where the model cannot be controlled by a duty from a Hall voltage.
     """
     refuse_uncontrolled(model)
-    if predict is None:
-        predict = dead_time(model) + lag(model) > 0.0
-    known = {**calibration(model), **(predictor(model, RATE) if predict else {})}
-    return Task(replace(PIFLC, fixed=known), goal, variations(model), (NOMINAL, HOT))
+    late = dead_time(model) + lag(model) > 0.0
+    predict = late if predict is None else predict
+    schedule = not late if schedule is None else schedule
+    known = calibration(model) | (predictor(model, RATE) if predict else NO_PREDICTOR)
+    known |= load(model) if schedule else {"load_share": 0.0}
+    design = replace(PIFLC, tuned=PIFLC.tuned | (SCHEDULE if schedule else {}), fixed=known)
+    return Task(design, goal, variations(model), (NOMINAL, HOT))
 
 
 def refuse_uncontrolled(model: Model) -> None:

@@ -47,6 +47,8 @@ PI = {
     "pi_output_support": (0.06, 2.0),
 }
 DERIVATIVE = {"derivative_support": (60.0, 10000.0), "derivative_time_constant": (0.0001, 0.01)}
+SCHEDULE = {"load_share": (0.05, 1.5)}
+"""Above 1 a schedule of the model as it is also carries the load with its winding hot."""
 SETS = {"positive": (0.4, 0.99), "negative": (0.4, 0.99)}  # the latter without its sign
 
 DESIGNS = {

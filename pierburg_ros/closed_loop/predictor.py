@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from pierburg_ros.closed_loop.load import duty_for, load, transmission
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model
-
-NEEDED = ("spring_stiffness", "spring_preload", "coulomb_friction", "supply_voltage", "hall_voltage_closed")
 
 
 def dead_time(model: Model) -> float:
@@ -27,20 +26,14 @@ def predictor(model: Model, rate: float) -> dict[str, float]:
     spring, or neither dead time nor lag.
     """
     value = model.values
-    if missing := [name for name in NEEDED if name not in value]:
-        raise InputError(f"Found no {missing[0]} in {model.actuator.name}, which the predictor needs. Leave it out.")
     if dead_time(model) == 0.0 and lag(model) == 0.0:
         raise InputError("Found neither dead time nor lag in the model, so there is nothing to predict. Leave it out.")
-    transmission = value["gear_ratio"] * value["torque_constant"]
-    duty = value["armature_resistance"] / (transmission * value["supply_voltage"])  # for each torque [1/(N.m)]
     stops = model.actuator.upper_stop - model.actuator.lower_stop
     span = value["hall_voltage_open"] - value["hall_voltage_closed"]
     found = {
         "predictor_delay": dead_time(model) + 1.0 / rate,
         "predictor_lag": lag(model),
-        "predictor_speed": value["supply_voltage"] / transmission * span / stops,
-        "predictor_hold_closed": duty * value["spring_preload"],
-        "predictor_hold_open": duty * (value["spring_preload"] + value["spring_stiffness"] * stops),
-        "predictor_friction": duty * value["coulomb_friction"],
+        "predictor_speed": value["supply_voltage"] / transmission(model) * span / stops,
+        "predictor_friction": duty_for(model, value["coulomb_friction"]),
     }
-    return {name: float(f"{number:.4g}") for name, number in found.items()}
+    return load(model) | {name: float(f"{number:.4g}") for name, number in found.items()}

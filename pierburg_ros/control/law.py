@@ -25,6 +25,7 @@ LONGEST = 1e3
 STATE = [
     ("started", np.bool_),  # a first sample has been seen
     ("saturated", np.bool_),  # the PI output is past its support, or the duty at a limit
+    ("setpoint", np.float64),  # of the last sample [rad]
     ("error", np.float64),  # setpoint minus measured [V]
     ("derivative", np.float64),  # filtered derivative of the error [V/s]
     ("integral", np.float64),  # the integrator's part of the PI output [V]
@@ -44,7 +45,7 @@ def new_state() -> Any:
 def forget(state: Any) -> None:
     """Bring a state back to that of `new_state`."""
     state.started = state.saturated = False
-    state.error = state.derivative = state.integral = state.pi_output = 0.0
+    state.setpoint = state.error = state.derivative = state.integral = state.pi_output = 0.0
     state.transfer = state.duty = 0.0
     predictor.forget(state)
 
@@ -56,7 +57,7 @@ def step(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: fl
     The first sample has no past: its derivative is 0, and the duty leaves from where it was.
     """
     follow(settings, state, setpoint, hall_voltage, dt)
-    return give(settings, state, duty_of(settings, state.pi_output, state.derivative), dt)
+    return give(settings, state, scheduled(settings, state) + duty_of(settings, state.pi_output, state.derivative), dt)
 
 
 @kernel
@@ -70,7 +71,7 @@ def follow(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: 
         slope = (error - state.error) / dt
         state.derivative += (slope - state.derivative) * dt / (dt + settings.derivative_time_constant)
         integrate(settings, state, error, dt)
-    state.error = error
+    state.setpoint, state.error = setpoint, error
     state.pi_output = settings.proportional_gain * error + state.integral
 
 
@@ -102,6 +103,15 @@ def within_support(settings: Any, integral: float) -> float:
 
 
 @kernel
+def scheduled(settings: Any, state: Any) -> float:
+    """The part of the duty [1] that carries the load at the setpoint, which the integrator need not find."""
+    share = (state.setpoint - settings.angle_closed) / (settings.angle_open - settings.angle_closed)
+    load = settings.load_closed + min(max(share, 0.0), 1.0) * (settings.load_open - settings.load_closed)
+    duty: float = settings.load_share * load
+    return duty
+
+
+@kernel
 def give(settings: Any, state: Any, duty: float, dt: float) -> float:
     """The duty [1] in transition and within its limits; notes saturation for the integrator."""
     if not state.started:
@@ -124,7 +134,8 @@ def take_over(settings: Any, state: Any) -> None:
     there a wide range of it gives the same duty. What difference of duty this leaves over fades away.
     """
     if not state.saturated:
-        pi_output = pi_output_for(settings, state.duty, state.derivative)
+        pi_output = pi_output_for(settings, state.duty - scheduled(settings, state), state.derivative)
         state.integral = within_support(settings, pi_output - settings.proportional_gain * state.error)
     state.pi_output = settings.proportional_gain * state.error + state.integral
-    state.transfer = state.duty - duty_of(settings, state.pi_output, state.derivative)
+    given = scheduled(settings, state) + duty_of(settings, state.pi_output, state.derivative)
+    state.transfer = state.duty - given

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pierburg_ros.control.law import follow, give
+from pierburg_ros.control.law import follow, give, scheduled
 from pierburg_ros.kernel import kernel
 
 
@@ -18,4 +18,5 @@ def step(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: fl
     """Duty [1] for one sample: setpoint [rad], Hall voltage [V], time since the previous sample [s]."""
     follow(settings, state, setpoint, hall_voltage, dt)
     proportional = state.pi_output / settings.pi_output_support
-    return give(settings, state, proportional + state.derivative / settings.derivative_support, dt)
+    weighed = proportional + state.derivative / settings.derivative_support
+    return give(settings, state, scheduled(settings, state) + weighed, dt)

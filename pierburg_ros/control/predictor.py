@@ -10,7 +10,7 @@ Transactions on Automatic Control 41 (1996) 1199-1203).
 
 The model is the sliding shaft of the nominal plant, in Hall voltage U and duty D:
 
-    dU/dt = speed (D - hold(U) - friction sign),   0 within the friction band, between the stops
+    dU/dt = speed (D - load(U) - friction sign),   0 within the friction band, between the stops
 
 With no delay and no lag, which is the default, the measurement passes as it is, bit for bit.
 """
@@ -89,9 +89,7 @@ def move(settings: Any, state: Any, voltage: float, duty: float, dt: float) -> N
     """Note how far the modelled shaft at a voltage [V] goes in a time [s] under a duty [1]."""
     span = settings.hall_voltage_open - settings.hall_voltage_closed
     share = (voltage - settings.hall_voltage_closed) / span
-    surplus = (
-        duty - settings.predictor_hold_closed - share * (settings.predictor_hold_open - settings.predictor_hold_closed)
-    )
+    surplus = duty - settings.load_closed - share * (settings.load_open - settings.load_closed)
     sliding = max(abs(surplus) - settings.predictor_friction, 0.0)
     way = settings.predictor_speed * sliding * dt if surplus > 0.0 else -settings.predictor_speed * sliding * dt
     low = min(settings.hall_voltage_closed - voltage, 0.0)

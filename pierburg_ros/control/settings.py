@@ -31,19 +31,19 @@ class Settings:
     """
 
     proportional_gain: float = declared(1.0, "1", 0.0, 100.0, "PI output [V] per error [V]")
-    integral_gain: float = declared(2.72, "1/s", 0.0, 1e4, "rate of the PI output [V/s] per error [V]")
-    integral_dead_zone: float = declared(0.00895, "V", 0.0, 0.5, "error within which the integrator rests")
+    integral_gain: float = declared(10.6, "1/s", 0.0, 1e4, "rate of the PI output [V/s] per error [V]")
+    integral_dead_zone: float = declared(0.0102, "V", 0.0, 0.5, "error within which the integrator rests")
     derivative_time_constant: float = declared(
-        0.000684, "s", 0.0, 1.0, "time constant of the low-pass filter on the derivative of the error"
+        0.00102, "s", 0.0, 1.0, "time constant of the low-pass filter on the derivative of the error"
     )
-    pi_output_support: float = declared(0.144, "V", 1e-3, 1e3, "PI output at which its sets N and P reach 1")
+    pi_output_support: float = declared(0.141, "V", 1e-3, 1e3, "PI output at which its sets N and P reach 1")
     derivative_support: float = declared(
-        586.0, "V/s", 1e-2, 1e9, "derivative of the error at which its sets N and P reach 1"
+        536.0, "V/s", 1e-2, 1e9, "derivative of the error at which its sets N and P reach 1"
     )
     negative_big: float = declared(-1.0, "1", -1.0, 1.0, "duty at the centre of output set NB")
-    negative: float = declared(-0.569, "1", -1.0, 1.0, "duty at the centre of output set N")
+    negative: float = declared(-0.56, "1", -1.0, 1.0, "duty at the centre of output set N")
     zero: float = declared(0.0, "1", -1.0, 1.0, "duty at the centre of output set Z")
-    positive: float = declared(0.94, "1", -1.0, 1.0, "duty at the centre of output set P")
+    positive: float = declared(0.906, "1", -1.0, 1.0, "duty at the centre of output set P")
     positive_big: float = declared(1.0, "1", -1.0, 1.0, "duty at the centre of output set PB")
     duty_minimum: float = declared(-1.0, "1", -1.0, 0.0, "lowest duty given out")
     duty_maximum: float = declared(1.0, "1", 0.0, 1.0, "highest duty given out")
@@ -53,9 +53,12 @@ class Settings:
     predictor_delay: float = declared(0.0, "s", 0.0, 10.0, "delay that the predictor looks over; 0: none")
     predictor_lag: float = declared(0.0, "s", 0.0, 10.0, "lag of the sensor that the predictor makes up for; 0: none")
     predictor_speed: float = declared(0.0, "V/s", 0.0, 1e6, "Hall voltage per time and duty beyond load and friction")
-    predictor_hold_closed: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the closed stop")
-    predictor_hold_open: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the open stop")
     predictor_friction: float = declared(0.0, "1", 0.0, 1.0, "duty that overcomes friction")
+    load_closed: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the closed stop")
+    load_open: float = declared(0.0, "1", -1.0, 1.0, "duty that carries the load at the open stop")
+    load_share: float = declared(
+        0.0, "1", 0.0, 2.0, "share of that duty which is scheduled over the setpoint; 0: left to the integrator"
+    )
     angle_closed: float = declared(0.0, "rad", -100.0, 100.0, "shaft angle at the closed stop")
     angle_open: float = declared(math.pi / 2, "rad", -100.0, 100.0, "shaft angle at the open stop")
     hall_voltage_closed: float = declared(0.42, "V", -100.0, 100.0, "Hall voltage at the closed stop")

@@ -11,10 +11,10 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.disturbance.apart import apart
 from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
+from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
-from pierburg_ros.diagnosis.remainder.turn import has_overtones
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
@@ -27,6 +27,7 @@ from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts
+from pierburg_ros.estimation.turn import has_overtones
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
@@ -82,8 +83,15 @@ def examined(
     deadline: Deadline,
 ) -> tuple[Found, Remainder | None]:
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
+    rest, single = untouched(data, nominal, recordings), len(recordings) == 1
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-    turning, single = has_overtones(data, nominal), len(recordings) == 1
+    turning = has_overtones(rest or data, nominal)
+    if rest and not turning:
+        # physics comes first
+        found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)
+        if verdict_on(found.chosen) != "unexplained":
+            return found, None
+        data = rest
     found = search(data, nominal, progress, jobs, Beam(depth=0) if turning else None, deadline)
     if verdict_on(found.chosen) != "unexplained":
         return found, None

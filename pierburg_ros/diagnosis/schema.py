@@ -138,7 +138,7 @@ class Errors(Part):
 
 
 class Horizon(Errors):
-    """Errors of the three models some time after they have been set to the measured state, on all samples."""
+    """Errors of the three models some time after they have been set to the measured state, on unseen samples."""
 
     after: Number
     """That time [s]; null: over whole recordings from their first sample."""

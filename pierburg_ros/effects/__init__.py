@@ -55,9 +55,14 @@ EFFECT: dict[str, Effect] = {effect.id: effect for effect in EFFECTS}
 """By id."""
 DECLARED: dict[str, Parameter] = {f"{effect.id}.{p.name}": p for effect in EFFECTS for p in effect.parameters}
 """Every parameter by dotted name."""
+_QUANTITIES = {
+    quantity: f"{effect.id}.{name}" for effect in EFFECTS for quantity, name in effect.elsewhere.quantities.items()
+}
+ADDED: dict[str, str] = {name: _QUANTITIES[p.added_to] for name, p in DECLARED.items() if p.added_to is not None}
+"""What a parameter is added to and may at most cancel, by dotted names."""
 ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not None)
 """The effect of a converter."""
 STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
 """Dotted name of its step."""
 
-__all__ = ["COPPER", "DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]
+__all__ = ["ADDED", "COPPER", "DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]

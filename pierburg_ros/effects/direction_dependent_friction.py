@@ -22,12 +22,13 @@ EFFECT = Effect(
         Parameter(
             "viscous_difference",
             0.0,
-            "additional damping when closing",
+            "additional damping when closing; cancels at most that of both directions",
             "N.m.s/rad",
             -LARGEST,
             LARGEST,
             plausible=(0.061, 0.92),
             searched=(-6.1, 6.1),
+            added_to="viscous_damping",
         ),
         Parameter(
             "coulomb_difference",

@@ -119,6 +119,8 @@ class Parameter(parameter.Parameter):
     """Base parameter that it is counted from, and is never below."""
     below: str | None = None
     """Base parameter that it stays below."""
+    added_to: Quantity | None = None
+    """Quantity that it is added to, and may at most cancel: a negative sum would drive and not resist."""
     stride: float | None = None
     """Largest factor by which one linear step may scale it; None: a step does not scale it."""
     inverse: bool = False

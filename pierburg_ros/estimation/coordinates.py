@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import DECLARED
+from pierburg_ros.effects import ADDED, DECLARED, EFFECT
 from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
@@ -83,6 +83,8 @@ class Coordinates:
             if name in result:
                 highest = self.axes[self.names.index(name)].maximum
                 result[name] = min(result[name] + result.get(below, self.nominal.values[below]), highest)
+        for name in result.keys() & ADDED.keys():
+            result[name] = max(result[name], least_added(name, result, self.nominal))
         return result
 
     def point(self, values: Mapping[str, float]) -> Signal:
@@ -112,7 +114,22 @@ def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
         value, most = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, below))
         if value != 0.0 and value >= most:
             ordered[name] = HIGHEST_SHARE * most
+    for name in ADDED:
+        least = least_added(name, ordered, nominal)
+        if ordered.get(name, nominal.values[name]) < least:
+            ordered[name] = least
     return ordered
+
+
+def least_added(name: str, values: Mapping[str, float], nominal: Model) -> float:
+    """The least value of a parameter that may at most cancel what it is added to; what `values` lack is nominal."""
+    return 0.0 - values.get(ADDED[name], nominal.values[ADDED[name]])
+
+
+def without_effects(model: Model, effects: Iterable[str]) -> Model:
+    """`model` with these effects absent, all else as it is but for pairs that must keep an order."""
+    absent = {f"{effect}.{name}": 0.0 for effect in effects for name in EFFECT[effect].names}
+    return model.with_values(in_order({**model.values, **absent}, model))
 
 
 def _axis(name: str, nominal: Model, duration: float) -> Axis:

@@ -107,6 +107,14 @@ class Data:
         """The first `duration` [s] of each run."""
         return replace(self, runs=tuple(run.cut(duration) for run in self.runs))
 
+    def only(self, number: int) -> Data:
+        """The recording of a `number`."""
+        return replace(self, runs=tuple(run for run in self.runs if run.number == number))
+
+    def without(self, number: int) -> Data:
+        """All recordings but that of a `number`."""
+        return replace(self, runs=tuple(run for run in self.runs if run.number != number))
+
     @property
     def train(self) -> Flags:
         """Which samples of `residual` train."""

@@ -21,11 +21,12 @@ CERTAIN = 4.0
 REACHES = np.array([0.003, 0.03, 0.3])
 """Shares of the way of a recording from which the reach of a discrepancy is searched. Chosen: a factor of ten apart;
 not varied."""
-MEMORIES = (0.3, 3.0, 30.0)
-"""Correlation times [s] from which it is searched. Chosen: a factor of ten apart; not varied."""
-SHORTEST, LONGEST = 0.01, 100.0
-"""Range of the correlation time [s] that is searched. Chosen: from a few samples to more than a recording of a minute;
-not varied."""
+MEMORIES = np.array([0.005, 0.05, 0.5])
+"""Correlation times from which it is searched, as shares of the longest recording. Chosen: a factor of ten apart; not
+varied."""
+SHORTEST, LONGEST = 1.0, 2.0
+"""Range of the correlation time that is searched, in samples and in longest recordings. Derived: what forgets within a
+sample is white noise, and what lasts twice as long as a recording is the same at both its ends."""
 SMALLEST, LARGEST = 1e-3, 10.0
 """Range of its size that is searched, in noises and in sizes of the residual. Derived: a thousandth of the noise
 changes no likelihood, and what is ten times the residual is not seen to vary."""
@@ -87,10 +88,12 @@ class Kalman:
 
         scale = max(float(np.std(residual[self.seen])), 0.1)
         whole = float(np.max(np.bincount(self.run, weights=self.way), initial=0.0)) + 1.0
-        starts = [np.log([scale, memory, reach]) for memory in MEMORIES for reach in whole * REACHES]
+        longest = float(np.max(np.bincount(self.run, weights=np.where(np.isinf(self.steps), 0.0, self.steps))))
+        sample = float(np.median(self.steps))
+        starts = [np.log([scale, memory, reach]) for memory in longest * MEMORIES for reach in whole * REACHES]
         bounds = [
             (math.log(SMALLEST), math.log(LARGEST * scale)),
-            (math.log(SHORTEST), math.log(LONGEST)),
+            (math.log(SHORTEST * sample), math.log(LONGEST * longest)),
             (math.log(NEAREST * whole), math.log(whole)),
         ]
         options = {"xatol": 0.02, "fatol": 0.5}

@@ -14,12 +14,9 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.least_squares import BRIEF
-from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.estimation.likelihood import SURE, TIED
 from pierburg_ros.estimation.slopes import FINE, sharp
 
-SURE = 1.96
-"""Standard deviations to either side that hold 95 %; its square is the rise of chi2 at the ends. Derived: the 97.5 %
-quantile of the normal distribution."""
 DOUBLINGS = 7
 """How often the reach of an interval is doubled at most: 128 times what the curvature says. Work: each costs up to
 three brief descents; an interval that wide is not identifiable anyway."""

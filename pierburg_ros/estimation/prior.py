@@ -9,11 +9,12 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.estimation.coordinates import Coordinates
+from pierburg_ros.estimation.likelihood import SURE
 
 KNOWN = 0.2
 """Standard deviation of the logarithm of a base parameter around its nominal value. Measured: on n = 4 splits of eight
-runs of a servo, with the same two effects, the error on the runs left out is 0.125, 0.036, 0.045 and 0.162 rad at 0.5;
-0.113, 0.037, 0.048 and 0.079 at 0.2; 0.116, 0.038, 0.044 and 0.065 at 0.1."""
+runs of a servo, with the same two effects, the error on the runs left out is 0.116, 0.044, 0.045 and 0.072 rad at 0.5;
+0.105, 0.045, 0.044 and 0.062 at 0.2; 0.098, 0.043, 0.051 and 0.065 at 0.1."""
 
 
 def improbability(coordinates: Coordinates, point: Signal) -> Signal:
@@ -22,9 +23,8 @@ def improbability(coordinates: Coordinates, point: Signal) -> Signal:
     Twice the logarithm of the prior is minus the sum of their squares, but for a constant. A base parameter is known to
     `KNOWN` around its nominal value; one that is nominally 0 to its own scale. Of an effect that the actuator always
     has, it spreads around the nominal value as far as what is plausible goes. Of any other effect, a number that may
-    be 0 spreads as far as its largest plausible value. One that may not, a time or a number of teeth, lies as often
-    within its plausible range as a normal variable within one standard deviation, by its logarithm. Moments are as
-    likely one as another.
+    be 0 spreads as far as its largest plausible value. One that may not, a time or a number of teeth, lies within its
+    plausible range in 95 of 100 actuators, by its logarithm. Moments are as likely one as another.
     """
     rows = [_row(coordinates, place, float(x)) for place, x in enumerate(point)]
     return np.array(rows, dtype=np.float64)
@@ -45,5 +45,5 @@ def _row(coordinates: Coordinates, place: int, x: float) -> float:
         return 0.0
     if declared.rhythm or declared.logarithmic:
         value = max(abs(axis.value(x)) / declared.scale(coordinates.nominal.scales), 1e-300)
-        return (math.log(value) - 0.5 * math.log(low * high)) / (0.5 * math.log(high / low))
+        return SURE * (math.log(value) - 0.5 * math.log(low * high)) / (0.5 * math.log(high / low))
     return x

@@ -7,7 +7,9 @@ the motor, sample by sample. It is linear in all that is unknown, so it takes mi
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +49,10 @@ shaft that is caught in motion or knocked lies beyond, one that slips does not."
 LATE = 0.5
 """Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
 controller whose current is recorded behind one it is a quarter to a third (n = 3)."""
+
+
+Part = tuple[Inputs, Signal, Signal, Flags]
+"""Inputs, and of each sample its time [s], what was measured, and whether it is seen; each shape (samples,)."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +102,16 @@ class _Motion:
     weight: bool
 
     def kept(self, which: Flags) -> _Motion:
-        signals = ("time", "angle", "velocity", "acceleration", "torque", "rate")
-        return replace(self, **{name: getattr(self, name)[which] for name in signals})
+        return replace(self, **{name: getattr(self, name)[which] for name in SIGNALS})
+
+    @staticmethod
+    def of_all(motions: Sequence[_Motion]) -> _Motion:
+        """One after the other."""
+        joined: dict[str, Any] = {name: np.concatenate([getattr(each, name) for each in motions]) for name in SIGNALS}
+        return replace(motions[0], **joined)
+
+
+SIGNALS = ("time", "angle", "velocity", "acceleration", "torque", "rate")
 
 
 def goes_round(model: Model, measured: Signal, quantity: str) -> bool:
@@ -129,10 +143,13 @@ def ahead(inputs: Inputs, lag: float) -> Inputs:
     return replace(inputs, command=np.asarray(inputs.command + lag * rate))
 
 
-def over_a_turn(model: Model, inputs: Inputs, time: Signal, measured: Signal, seen: Flags) -> Balance:
-    """What makes up the motor torque, from the samples that are `seen`, shape (samples,)."""
-    motion = _motion(model, inputs, time, measured)
-    return _balanced(motion.kept(np.interp(motion.time, time, seen.astype(float)) > 0.99), False)[0]
+def over_a_turn(model: Model, parts: Sequence[Part]) -> Balance:
+    """What makes up the motor torque in all `parts` of recordings together."""
+    motions = []
+    for inputs, time, measured, seen in parts:
+        motion = _motion(model, inputs, time, measured)
+        motions.append(motion.kept(np.interp(motion.time, time, seen.astype(float)) > 0.99))
+    return _balanced(_Motion.of_all(motions), False)[0]
 
 
 def finest(place: Signal) -> float:

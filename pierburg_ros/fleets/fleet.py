@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pierburg_ros.effects import DECLARED
-from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.ageing import Ageing, ageing
-from pierburg_ros.fleets.attention import Attention, ranked
-from pierburg_ros.fleets.course import DAY, courses, is_strength, moment
+from pierburg_ros.errors import InputError, near
+from pierburg_ros.fleets.ageing.ageing import Ageing, ageing
+from pierburg_ros.fleets.ageing.attention import Attention, ranked
+from pierburg_ros.fleets.ageing.course import DAY, courses, is_strength, moment
 from pierburg_ros.fleets.page import fleet_page
+from pierburg_ros.fleets.recordings.units import sources
 from pierburg_ros.fleets.run import Examined, Report, Where, conduct
 from pierburg_ros.fleets.store import Store
 from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows, require_parquet, write_parquet
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.fleets.units import sources
 from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole
@@ -144,8 +144,12 @@ def units_of(nominal: Model) -> dict[str, str]:
 
 def checked_limits(limits: Mapping[str, float], nominal: Model) -> dict[str, float]:
     """The limits, or InputError where one is of no quantity that has a course."""
+    base = list(nominal.actuator.parameters)
+    known = [*base, *(name for name in DECLARED if is_strength(name))]
     for name in limits:
-        if name not in nominal.actuator.parameters and not (name in DECLARED and is_strength(name)):
-            known = ", ".join(nominal.actuator.parameters)
-            raise InputError(f"--limit found {name}, expected a base parameter ({known}) or an effect's strength.")
+        if name not in known:
+            raise InputError(
+                f"--limit found {name}, expected a base parameter ({', '.join(base)}) or an effect's strength."
+                f"{near(name, known)}"
+            )
     return dict(limits)

@@ -8,9 +8,9 @@ from importlib import resources
 from typing import Any
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.fleets.ageing import Ageing
-from pierburg_ros.fleets.attention import KINDS, Attention, day
-from pierburg_ros.fleets.course import DAY, moment
+from pierburg_ros.fleets.ageing.ageing import Ageing
+from pierburg_ros.fleets.ageing.attention import KINDS, Attention, day
+from pierburg_ros.fleets.ageing.course import DAY, moment
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.fleets.store import RECORDINGS
 from pierburg_ros.pages.numbers import words

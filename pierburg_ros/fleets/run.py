@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any
 
 from pierburg_ros.executors import Lost, ended
+from pierburg_ros.fleets.recordings.units import Source
 from pierburg_ros.fleets.store import Store
 from pierburg_ros.fleets.structure import base_names, explained, own_effects, without_least
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.fleets.units import Source
 from pierburg_ros.fleets.work import Measurement, Outcome, examined, measured
 
 Report = Callable[[str, int, int, str], None]

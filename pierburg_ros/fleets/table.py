@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.ageing import Ageing
-from pierburg_ros.fleets.course import moment
+from pierburg_ros.fleets.ageing.ageing import Ageing
+from pierburg_ros.fleets.ageing.course import moment
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.fleets.store import RECORDINGS
 

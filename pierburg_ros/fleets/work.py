@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.errors import InputError, one_line
-from pierburg_ros.fleets.place import at_hand, digest
+from pierburg_ros.fleets.recordings.place import at_hand, digest
+from pierburg_ros.fleets.recordings.units import Source
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.fleets.units import Source
 from pierburg_ros.identification.fit import fit
 from pierburg_ros.library.diagnosing import Diagnosis, diagnose
 from pierburg_ros.plant import Model
@@ -22,7 +22,7 @@ from pierburg_ros.recording import Channel, Recording
 LIBRARY = "../../plotly.min.js"
 """Where a recording's report finds the plotting library, which all reports of a fleet share."""
 SURE = 1.959963984540054
-"""Standard deviations to either side that hold 95 % of a normal distribution."""
+"""Standard deviations to either side that hold 95 % of a normal distribution. Given: the quantile of its table."""
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,15 @@ from itertools import combinations
 
 import numpy as np
 
+from pierburg_ros.actuators.gauge import scaling
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.intervals import SURE
+from pierburg_ros.estimation.likelihood import SURE
 from pierburg_ros.estimation.slopes import sharp
 from pierburg_ros.identification.fit import Identified
+from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 
 KNOWN = 0.1
@@ -25,6 +27,9 @@ NOTHING = 1e-11
 MOST_PARTNERS = 4
 """Largest number of parameters looked for as those that together imitate another. Work: all combinations are tried;
 the valve's motion has four numbers, so four imitate any."""
+
+ONLY_RATIOS = "not identifiable: held, since a recorded input and a motion tell all torques only in ratio to it."
+"""What is said of a factor of the input."""
 
 
 @dataclass(frozen=True)
@@ -43,10 +48,27 @@ class Finding:
 
 def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict[str, Finding]:
     """A finding for every base parameter of the actuator, free or held, and every other free parameter."""
-    names = tuple(dict.fromkeys([*fitted.model.actuator.parameters, *fitted.names]))
-    unit = fitted.model.actuator.shown(recordings[0].unit)
+    actuator = fitted.model.actuator
+    names = tuple(dict.fromkeys([*actuator.parameters, *fitted.names]))
+    unit = actuator.shown(recordings[0].unit)
     trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, unit)
-    return {name: trace.finding(name) for name in names}
+    findings = {name: trace.finding(name) for name in names}
+    gauges = (name for name in scaling(actuator) if name not in fitted.names and findings[name].identifiable)
+    return findings | {name: Finding(False, None, {}, ONLY_RATIOS) for name in gauges}
+
+
+def endless(fitted: Identified, model: Model, name: str, unit: str) -> Finding:
+    """The finding for a parameter of `model` that a fit drives to the end of every range."""
+    kept, nominal = fitted.model.values[name], model.values[name]
+    if name not in fitted.names:
+        why = f"not identifiable: a fit drives it to the end of its range, and does as well with {kept:.4g}"
+        return Finding(False, None, {}, f"{why} {unit} as described.")
+    side = "above" if kept > nominal else "below"
+    why = (
+        f"not identifiable: the fit drives it {side} {kept:.4g} {unit}, from {nominal:.4g} as described. Either the"
+        " description is far off, or it stands for physics that the model lacks."
+    )
+    return Finding(False, None, {}, why)
 
 
 def _relative_slopes(fitted: Identified, recordings: Sequence[Recording], names: tuple[str, ...]) -> Signal:

@@ -9,17 +9,20 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators.units import unit_of as unit_in
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.run import resimulated
-from pierburg_ros.identification.fit import Identified, fit
-from pierburg_ros.identification.identifiability import Finding, identifiability
+from pierburg_ros.estimation.turn import described_turn
+from pierburg_ros.identification.fit import Identified
+from pierburg_ros.identification.identifiability import Finding, endless, identifiability
 from pierburg_ros.identification.paper.lumps import Lump, fitted_duties, fitted_lumps
 from pierburg_ros.identification.paper.static_characteristic import (
     StaticCharacteristic,
     static_characteristic,
 )
 from pierburg_ros.identification.paper.step_response import StepResponse, step_response
+from pierburg_ros.identification.reach import fitted
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -46,6 +49,15 @@ class Identification:
     steps: StepResponse | None
     validation_rmse: float
     noise: float
+
+    @property
+    def repeated(self) -> str | None:
+        """What is part of the fitted model because it repeats itself with every turn, in words; None if nothing is."""
+        residual = self.fitted.model.residual_torque
+        if residual is None or self.model.residual_torque is not None:
+            return None
+        unit = unit_in("N.m", self.model.actuator.motion)
+        return f"A torque is part of the model, residual_torque: {described_turn(residual['torque'], unit)}."
 
     def as_mapping(self) -> dict[str, Any]:
         """The content of identification.json (section 5 of docs/contract.md)."""
@@ -104,17 +116,19 @@ def identify(
     for recording in recordings:
         refuse_unmoved(recording, model.actuator)
     names = free_names(model, free, fixed)
-    fitted = fit(model, recordings, names, jobs=jobs)
+    found, runaway = fitted(model, recordings, names, jobs=jobs)
+    findings = identifiability(found, recordings)
+    findings |= {name: endless(found, model, name, unit_of(model, name)) for name in runaway}
     static = static_characteristic(recordings, model.actuator) if papers(model.actuator) else None
-    paper = papers(model.actuator) and fitted.model.values["spring_stiffness"] > 0.0
+    paper = papers(model.actuator) and found.model.values["spring_stiffness"] > 0.0
     return Identification(
         model,
-        fitted,
-        identifiability(fitted, recordings),
-        fitted_lumps(fitted) if paper else None,
+        found,
+        findings,
+        fitted_lumps(found) if paper else None,
         static,
-        _steps(recordings, fitted.model, static) if paper else None,
-        validation_rmse(fitted.model, recordings, names, jobs),
+        _steps(recordings, found.model, static) if paper else None,
+        validation_rmse(found.model.with_residual(model.residual_torque), recordings, found.names, jobs),
         float(np.sqrt(np.mean([noise_of(recording.time, recording.measured) ** 2 for recording in recordings]))),
     )
 
@@ -167,8 +181,8 @@ def validation_rmse(
         unseen = recordings[0]
         end = unseen.time[0] + TRAINED_SHARE * unseen.duration
         seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
-    fitted = fit(start, seen, names, starts=1, jobs=jobs)
-    kept, simulated = resimulated(fitted.model, unseen)
+    found, _ = fitted(start, seen, names, starts=1, jobs=jobs)
+    kept, simulated = resimulated(found.model, unseen)
     residual = (kept.measured - simulated)[first:]
     return float(np.sqrt(np.mean(residual**2)))
 

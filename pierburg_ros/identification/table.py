@@ -27,8 +27,9 @@ def interval(ends: Sequence[float] | None) -> str:
 
 
 def reasons(found: Identification) -> list[str]:
-    """A sentence for each parameter that these recordings cannot tell."""
-    return [f"{name}: {finding.reason}" for name, finding in found.findings.items() if not finding.identifiable]
+    """A sentence for each parameter that these recordings cannot tell, and for what repeats itself with every turn."""
+    said = [f"{name}: {finding.reason}" for name, finding in found.findings.items() if not finding.identifiable]
+    return [found.repeated, *said] if found.repeated else said
 
 
 def lump_table(found: Identification) -> Listing | None:

@@ -13,18 +13,18 @@ from std_srvs.srv import SetBool
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import Controller, Setpoints, Settings, read_setpoint_file
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.controller_outputs import Outputs
 from pierburg_ros.nodes.controller_place import Place
-from pierburg_ros.nodes.controller_reports import ControllerReports
 from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW, PROTECTION, WINDING
 from pierburg_ros.nodes.core.guarded_controller import GuardedController
 from pierburg_ros.nodes.core.sampled_controller import SampledController
-from pierburg_ros.nodes.lifecycle import ManagedNode
-from pierburg_ros.nodes.qos import COMMANDS
-from pierburg_ros.nodes.running import run
-from pierburg_ros.nodes.sample_clock import SampleClock
-from pierburg_ros.nodes.signals import Signal
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.lifecycle import ManagedNode
+from pierburg_ros.nodes.graph.qos import COMMANDS
+from pierburg_ros.nodes.graph.running import run
+from pierburg_ros.nodes.graph.sample_clock import SampleClock
+from pierburg_ros.nodes.graph.signals import Signal
+from pierburg_ros.nodes.reports.controller import ControllerReports
 
 STATUS_PERIOD = 0.1
 """Time between two publications of an unchanged `active_setpoint` [s]."""

@@ -6,9 +6,9 @@ from rclpy.node import Node
 from std_msgs.msg import Bool, Float64
 
 from pierburg_ros.control import Internals
-from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.publishers import publishers_of
-from pierburg_ros.nodes.qos import PUBLISHED
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.publishers import publishers_of
+from pierburg_ros.nodes.graph.qos import PUBLISHED
 
 INTERNALS = {"error": Float64, "pi_output": Float64, "derivative": Float64, "saturated": Bool}
 """What `publish_internals` publishes: the internals of the control law and their message types."""

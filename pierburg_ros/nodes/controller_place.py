@@ -9,10 +9,10 @@ from std_msgs.msg import Float64
 from pierburg_ros.nodes.controller_outputs import Outputs
 from pierburg_ros.nodes.core.precedence import Precedence
 from pierburg_ros.nodes.core.rate import Rate
-from pierburg_ros.nodes.diagnostics import ERROR, WARN
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.publishers import listed, publishers_of
-from pierburg_ros.nodes.qos import SIGNALS
+from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.publishers import listed, publishers_of
+from pierburg_ros.nodes.graph.qos import SIGNALS
 
 TASK = "duty"
 ASKED = 0.5

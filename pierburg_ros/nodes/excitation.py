@@ -9,11 +9,11 @@ from std_msgs.msg import Float64
 
 from pierburg_ros.control import Schedule, read_duty_file, read_setpoint_file
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.qos import COMMANDS, PUBLISHED
-from pierburg_ros.nodes.running import run
-from pierburg_ros.nodes.signals import Signal
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.qos import COMMANDS, PUBLISHED
+from pierburg_ros.nodes.graph.running import run
+from pierburg_ros.nodes.graph.signals import Signal
 from pierburg_ros.parameter import Parameter as Declaration
 
 EXCITATION = (

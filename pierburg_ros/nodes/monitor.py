@@ -18,12 +18,12 @@ from pierburg_ros.monitoring.evidence import decoded
 from pierburg_ros.monitoring.findings import Finding
 from pierburg_ros.monitoring.monitor import Monitor
 from pierburg_ros.monitoring.pairing import Angle, Pairing
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.monitor_parameters import MONITOR
-from pierburg_ros.nodes.diagnostics import ERROR, WARN
-from pierburg_ros.nodes.drained import Drained, Unserved
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.running import run
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.graph.drained import Drained, Unserved
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.running import run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.model_file import read_model
 

@@ -14,7 +14,6 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.controller_parameters import WINDING
 from pierburg_ros.nodes.core.pacing import Pacer
 from pierburg_ros.nodes.core.physics import Physics, chosen_model
@@ -24,13 +23,14 @@ from pierburg_ros.nodes.core.protection.limits import limits_of
 from pierburg_ros.nodes.core.protection.winding import Winding
 from pierburg_ros.nodes.core.sampled_plant import Sample, SampledPlant
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
-from pierburg_ros.nodes.heat_report import HeatReport
-from pierburg_ros.nodes.held_back import HeldBack
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.plant_reports import PlantReports
-from pierburg_ros.nodes.qos import PUBLISHED
-from pierburg_ros.nodes.running import run
-from pierburg_ros.nodes.signals import Signal
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.qos import PUBLISHED
+from pierburg_ros.nodes.graph.running import run
+from pierburg_ros.nodes.graph.signals import Signal
+from pierburg_ros.nodes.recording.held_back import HeldBack
+from pierburg_ros.nodes.reports.heat import HeatReport
+from pierburg_ros.nodes.reports.plant import PlantReports
 
 SWITCH_INTERVAL = 0.0005
 """Longest turn of one thread [s] while another waits; Python's own 5 ms are more than a period."""

@@ -14,17 +14,17 @@ from std_srvs.srv import SetBool, Trigger
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
 from pierburg_ros.nodes.core.source_order import SourceOrder
-from pierburg_ros.nodes.definitions import type_name
-from pierburg_ros.nodes.diagnostics import ERROR, WARN
-from pierburg_ros.nodes.parameter_values import ParameterValues
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.receiver import Receiver
-from pierburg_ros.nodes.recorded_time import CLOCK, RecordedTime
-from pierburg_ros.nodes.recorded_topics import Received, RecordedTopics
-from pierburg_ros.nodes.recording_file import Topic
-from pierburg_ros.nodes.recording_series import RecordingSeries
-from pierburg_ros.nodes.recording_writer import RecordingWriter
-from pierburg_ros.nodes.running import run
+from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.graph.parameter_values import ParameterValues
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.running import run
+from pierburg_ros.nodes.recording.definitions import type_name
+from pierburg_ros.nodes.recording.file import Topic
+from pierburg_ros.nodes.recording.receiver import Receiver
+from pierburg_ros.nodes.recording.series import RecordingSeries
+from pierburg_ros.nodes.recording.time import CLOCK, RecordedTime
+from pierburg_ros.nodes.recording.topics import Received, RecordedTopics
+from pierburg_ros.nodes.recording.writer import RecordingWriter
 
 HORIZON = 0.1
 """Time for which messages are held back to be written in the order of their sending [s]."""

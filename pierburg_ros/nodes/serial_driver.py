@@ -12,13 +12,13 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.nodes import messages
 from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
-from pierburg_ros.nodes.diagnostics import ERROR, WARN
-from pierburg_ros.nodes.parameters import LiveNode
-from pierburg_ros.nodes.qos import PUBLISHED, SIGNALS
-from pierburg_ros.nodes.running import run
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
+from pierburg_ros.nodes.graph.parameters import LiveNode
+from pierburg_ros.nodes.graph.qos import PUBLISHED, SIGNALS
+from pierburg_ros.nodes.graph.running import run
 from pierburg_ros.serial_line.link import Link, Received
 from pierburg_ros.serial_line.port import Port, Unplugged
 

@@ -30,6 +30,9 @@ PIECE = np.dtype(
     align=True,
 )
 
+OUTSIDE = np.dtype([("serial", np.int64), ("time", np.float64), ("torque", np.float64), ("rate", np.float64)])
+"""A load from outside at one moment: of which parameters, s, N.m, N.m/s."""
+
 _REMEMBERED = [(effect.id, [(name, np.float64) for name in effect.state]) for effect in EFFECTS if effect.state]
 STATE = np.dtype(
     [
@@ -56,6 +59,7 @@ STATE = np.dtype(
         ("step", np.float64),  # s, internal step that was last accepted
         ("events", np.float64),  # of late, beyond those that may go on
         ("piece", PIECE),  # the linear piece last computed
+        ("outside", OUTSIDE),  # the load last computed
         ("waiting", np.int64),  # changes under way
         ("first", np.int64),
         ("queue_time", np.float64, (QUEUE,)),  # s

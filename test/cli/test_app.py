@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from pierburg_ros.cli import app
-from pierburg_ros.cli.recordings import topics_of
+from pierburg_ros.cli.options.recordings import topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
 

@@ -13,7 +13,7 @@ import pytest
 import typer
 
 from pierburg_ros.cli import app
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
 
 COMMANDS = tuple(app.COMMANDS)
 DOCUMENT = {"verdict": "consistent", "value": 1.5}

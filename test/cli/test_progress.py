@@ -5,9 +5,9 @@ import io
 import pytest
 from rich.console import Console
 
-from pierburg_ros.cli import progress as shown
-from pierburg_ros.cli.progress import Log, Step, duration
-from pierburg_ros.cli.terminal import loudness
+from pierburg_ros.cli.console import progress as shown
+from pierburg_ros.cli.console.progress import Log, Step, duration
+from pierburg_ros.cli.console.terminal import loudness
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 from rich.panel import Panel
 from rich.table import Table
 
-from pierburg_ros.cli.terminal import terminal
+from pierburg_ros.cli.console.terminal import terminal
 
 
 def test_markup_emoji_and_control_characters_are_shown_as_they_stand(capsys):

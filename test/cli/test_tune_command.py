@@ -6,7 +6,7 @@ from dataclasses import asdict
 import pytest
 
 from pierburg_ros.cli.app import main
-from pierburg_ros.cli.models import chosen_model
+from pierburg_ros.cli.options.models import chosen_model
 from pierburg_ros.closed_loop.corrected import task_for
 from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.goal import Goal
@@ -94,10 +94,21 @@ def test_the_predictor_can_be_left_out(lagging, tmp_path):
     assert read_parameter_file(tmp_path / "plain.yaml").predictor_lag == 0.0
 
 
+@pytest.mark.parametrize(("option", "scheduled"), [((), True), (("--no-schedule",), False)])
+def test_a_model_without_delay_or_lag_gets_a_schedule_unless_told_otherwise(option, scheduled, tmp_path, capsys):
+    model, file = tmp_path / "model.yaml", tmp_path / "controller.yaml"
+    model.write_text("actuator: pierburg\nparameters: {spring_preload: 0.35}\n")
+    assert run("--model", model, "-o", file, *option, *QUICK) == 0
+    settings = read_parameter_file(file)
+    assert (settings.load_closed > 0.12) is scheduled
+    assert settings.load_share == 0.0 or scheduled
+
+
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (("--predictor",), "without a model"),
+        (("--predictor",), "but no model"),
+        (("--schedule",), "but no model"),
         (("--actuator", "pierburg", "--predictor"), "neither dead time nor lag"),
         (("--actuator", "xl330"), "the controller is tuned for a duty, a Hall voltage and a spring"),
         (("--actuator", "pierburg", "--compare", "control.md"), "Found --compare with a model"),

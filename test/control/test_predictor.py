@@ -11,7 +11,7 @@ from pierburg_ros.control.predictor import LONGEST_DELAY, predicted
 
 DT = 0.002
 SPEED = 40.0
-MODEL = {"predictor_speed": SPEED, "predictor_hold_closed": 0.1, "predictor_hold_open": 0.2, "predictor_friction": 0.07}
+MODEL = {"predictor_speed": SPEED, "load_closed": 0.1, "load_open": 0.2, "predictor_friction": 0.07}
 
 
 def friction_free(**values):

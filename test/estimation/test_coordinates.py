@@ -8,7 +8,7 @@ from support.recordings import NOMINAL, PIERBURG, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import possible, starts_of
 from pierburg_ros.effects.effect import Start
-from pierburg_ros.estimation.coordinates import Coordinates, in_order
+from pierburg_ros.estimation.coordinates import Coordinates, in_order, without_effects
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.plant import Model
 
@@ -20,6 +20,8 @@ VARIANTS = [
 ]
 FRICTION = "coulomb_friction"
 BREAKAWAY = "static_friction.breakaway_torque"
+VISCOUS = "viscous_friction.coefficient"
+DIFFERENCE = "direction_dependent_friction.viscous_difference"
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +39,8 @@ def test_values_survive_the_way_through_coordinates(variant: Variant, starts: di
         values[FRICTION] = 0.18
         if BREAKAWAY in values:
             values[BREAKAWAY] += 0.18
+        if values.get(DIFFERENCE, 0.0) < 0.0:
+            values[DIFFERENCE] = 0.0  # without damping in both directions there is none to take away
         assert coordinates.values(coordinates.point(values)) == pytest.approx(values)
 
 
@@ -59,6 +63,23 @@ def test_a_pair_out_of_order_is_put_in_order_and_others_stay() -> None:
     assert in_order(values, NOMINAL) == {**values, BREAKAWAY: 0.3}
     absent = {FRICTION: 0.3, BREAKAWAY: 0.0}
     assert in_order(absent, NOMINAL) == absent
+
+
+def test_what_is_added_to_damping_takes_away_no_more_than_there_is() -> None:
+    assert in_order({VISCOUS: 0.03, DIFFERENCE: -0.05}, NOMINAL) == {VISCOUS: 0.03, DIFFERENCE: -0.03}
+    possible = {VISCOUS: 0.03, DIFFERENCE: -0.02}
+    assert in_order(possible, NOMINAL) == possible
+    coordinates = Coordinates((VISCOUS, DIFFERENCE), NOMINAL, 60.0)
+    lower, upper = coordinates.bounds
+    for point in (lower, np.array([upper[0], lower[1]]), np.array([0.01, lower[1]])):
+        values = coordinates.values(point)
+        assert values[DIFFERENCE] >= -values[VISCOUS]
+
+
+def test_without_damping_nothing_is_left_that_was_taken_away_from_it() -> None:
+    model = NOMINAL.with_values({VISCOUS: 0.03, DIFFERENCE: -0.02, "presliding.stiffness": 20.0})
+    left = without_effects(model, ["viscous_friction"])
+    assert left.active_effects == ("presliding",)
 
 
 def test_a_change_has_a_value_before_one_after_and_a_time() -> None:

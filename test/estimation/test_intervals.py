@@ -14,7 +14,8 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.intervals import SURE, estimates
+from pierburg_ros.estimation.intervals import estimates
+from pierburg_ros.estimation.likelihood import SURE
 
 X, Y = "spring_preload", "coulomb_friction"
 WIDE = 1e4

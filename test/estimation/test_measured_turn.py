@@ -26,7 +26,8 @@ def balance_of(path: Path) -> tuple[float, Balance]:
     time, angle = time[kept] - time[0], counts[kept] * TURN / 8192
     recording = Recording(path.stem, "position", time, angle, Channel(time, current[kept]), input="current")
     run = data_of([recording], ROTOR).runs[0]
-    return run.input_lag, over_a_turn(ROTOR, run.inputs, run.time, run.measured, np.ones(run.time.size, dtype=bool))
+    seen = np.ones(run.time.size, dtype=bool)
+    return run.input_lag, over_a_turn(ROTOR, [(run.inputs, run.time, run.measured, seen)])
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the ODrive recordings (../shared/data) are not here")

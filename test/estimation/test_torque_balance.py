@@ -43,7 +43,7 @@ def test_a_ripple_with_an_overtone_is_found_with_amplitude_and_phase() -> None:
     overtone = {"angle": angle, "velocity": np.zeros(1), "period": TURN}
     model = ROTOR.with_values(COGGING).with_residual({**overtone, "torque": 0.003 * np.cos(28.0 * angle)[:, None]})
     inputs = Inputs(TIME, current(0))
-    found = over_a_turn(ROTOR, inputs, TIME, turned(model, inputs.command, 0), all_of(TIME))
+    found = over_a_turn(ROTOR, [(inputs, TIME, turned(model, inputs.command, 0), all_of(TIME))])
     assert set(found.orders.tolist()[:2]) == {7, 28}
     true = 0.006 * np.sin(7.0 * ANGLE + 0.8) + 0.003 * np.cos(28.0 * ANGLE)
     assert np.corrcoef(found.torque(ANGLE), true)[0, 1] > 0.98
@@ -52,7 +52,7 @@ def test_a_ripple_with_an_overtone_is_found_with_amplitude_and_phase() -> None:
 
 
 def test_what_does_not_repeat_itself_is_given_no_order() -> None:
-    found = [over_a_turn(ROTOR, Inputs(TIME, current(seed)), TIME, turned(ROTOR, current(seed), seed), all_of(TIME))
+    found = [over_a_turn(ROTOR, [(Inputs(TIME, current(seed)), TIME, turned(ROTOR, current(seed), seed), all_of(TIME))])
              for seed in range(10)]  # fmt: skip
     # one in a hundred would be given one by chance
     assert sum(each.orders.size > 0 for each in found) <= 1

@@ -12,7 +12,7 @@ from support.fleets import examined, fleet, limited, named
 
 import pierburg_ros as pr
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.course import courses
+from pierburg_ros.fleets.ageing.course import courses
 from pierburg_ros.fleets.fleet import checked_limits, units_of
 from pierburg_ros.fleets.structure import base_names, own_effects, without_least
 from pierburg_ros.fleets.table import COLUMNS

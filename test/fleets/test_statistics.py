@@ -7,12 +7,12 @@ import pytest
 from scipy import optimize, stats
 from support.courses import course
 
-from pierburg_ros.fleets.discovery import discovery_rates
-from pierburg_ros.fleets.forecast import forecast
-from pierburg_ros.fleets.outliers import differences
-from pierburg_ros.fleets.regression import regression
-from pierburg_ros.fleets.step import step
-from pierburg_ros.fleets.trend import line
+from pierburg_ros.fleets.ageing.discovery import discovery_rates
+from pierburg_ros.fleets.ageing.forecast import forecast
+from pierburg_ros.fleets.ageing.outliers import differences
+from pierburg_ros.fleets.ageing.regression import regression
+from pierburg_ros.fleets.ageing.step import step
+from pierburg_ros.fleets.ageing.trend import line
 
 TIME = np.linspace(0.0, 365.0, 25)
 

@@ -5,9 +5,9 @@ from datetime import datetime, timezone
 import pytest
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.pattern import instant, matcher
-from pierburg_ros.fleets.place import at_hand, digest
-from pierburg_ros.fleets.units import sources
+from pierburg_ros.fleets.recordings.pattern import instant, matcher
+from pierburg_ros.fleets.recordings.place import at_hand, digest
+from pierburg_ros.fleets.recordings.units import sources
 
 
 def utc(*moment):

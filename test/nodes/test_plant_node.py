@@ -97,6 +97,7 @@ def test_what_cannot_be_set_is_refused_with_a_reason(plant):
         ("armature_resistance", math.nan, "expected 0.1 to 50 ohm"),
         ("armature_resistance", "high", "expected a number"),
         ("nonsense", 1.0, "has no parameter 'nonsense'"),
+        ("suply_voltage", 12.0, "Did you mean supply_voltage?"),
         ("actuator", "xl330", "read-only"),
     ]
     for name, value, reason in refusals:

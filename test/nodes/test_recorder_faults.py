@@ -19,8 +19,8 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 from support.ros_graph import DEADLINE
 
-from pierburg_ros.nodes import messages
-from pierburg_ros.nodes.held_back import HeldBack
+from pierburg_ros.nodes.graph import messages
+from pierburg_ros.nodes.recording.held_back import HeldBack
 from pierburg_ros.recording.formats.recover import is_whole, recover
 from pierburg_ros.recording.loss import LOSSES
 

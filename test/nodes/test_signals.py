@@ -7,7 +7,7 @@ pytest.importorskip("rclpy")
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64
 
-from pierburg_ros.nodes.signals import Signal
+from pierburg_ros.nodes.graph.signals import Signal
 
 pytestmark = pytest.mark.ros
 

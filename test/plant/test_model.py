@@ -41,6 +41,10 @@ def test_changing_values_leaves_the_original_alone() -> None:
         ({"sensor_nonlinearity.half_waves": 1.5}, "half_waves is 1.5; expected 1 or 2"),
         ({"static_friction.breakaway_torque": 0.1}, "expected 0 (absent) or at least coulomb_friction, 0.2007"),
         ({"coulomb_friction": 0.3, "static_friction.breakaway_torque": 0.25}, "at least coulomb_friction, 0.3"),
+        (
+            {"viscous_friction.coefficient": 0.02, "direction_dependent_friction.viscous_difference": -0.03},
+            "is -0.03 and viscous_friction.coefficient 0.02; expected a sum of at least 0",
+        ),
         ({"supply_sag.source_resistance": 4.2}, "expected less than armature_resistance, 4.139"),
     ),
 )

@@ -47,9 +47,12 @@ def test_the_number_of_threads_changes_no_bit(threads):
 
 
 @pytest.mark.parametrize("inductance", [1e-6, 1e-9, 1e-15])
-def test_a_winding_as_quick_as_one_likes_is_the_winding_without_inductance(inductance):
-    quick = simulate(NOMINAL.with_values({"armature_inductance.inductance": inductance}), STEPS, TIME)
-    assert np.abs(quick - simulate(NOMINAL, STEPS, TIME)).max() < 10.0 * max(inductance, 1e-8)
+@pytest.mark.parametrize("gear", [{}, {"backlash.gap": 0.2, "backlash.motor_friction_share": 0.4}])
+def test_a_winding_as_quick_as_one_likes_is_the_winding_without_inductance(gear, inductance):
+    slow = NOMINAL.with_values(gear)
+    quick = slow.with_values({"armature_inductance.inductance": inductance})
+    apart = np.abs(simulate(quick, STEPS, TIME) - simulate(slow, STEPS, TIME))
+    assert apart.max() < 10.0 * max(inductance, 1e-8)
 
 
 def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
@@ -58,6 +61,32 @@ def test_a_set_that_cannot_be_simulated_ends_and_is_not_a_number():
     assert np.isnan(output[-1])
     allowed = (BURST + SUSTAINED * TIME[-1]) * 20e-6  # s, an event taking twenty times its usual time
     assert time.process_time() - began < allowed
+
+
+def test_a_stiff_gear_that_stands_leaning_comes_to_an_end():
+    """Motor and shaft rest against each other; the angle's rounding swings on the gear for ever, and is no motion."""
+    leaning = {"coulomb_friction": 1e-4, "cogging_torque.amplitude": 56.0, "cogging_torque.phase": 6.127}
+    stiff, rigid = (
+        simulate(NOMINAL.with_values({**leaning, "gear_compliance.stiffness": stiffness}), STEPS, TIME, 1.0)
+        for stiffness in (3e4, 0.0)
+    )
+    assert np.abs(stiff - rigid).max() < 2.0 * 10.0 / 3e4 * 2.7  # V: what the gear gives under the strongest torque
+
+
+def test_a_step_that_leads_beyond_all_numbers_is_taken_shorter():
+    """From the top of a ripple's hill one step of the first length grows beyond all numbers."""
+    hill = {
+        "spring_preload": 8.0,
+        "gear_ratio": 85.79,
+        "gear_compliance.stiffness": 0.42,
+        "gear_compliance.damping": 0.077,
+        "cogging_torque.amplitude": 58.0,
+        "cogging_torque.periods_per_motor_revolution": 381.8,
+        "cogging_torque.phase": 3.64,
+    }
+    for angle in np.linspace(0.1, 1.4, 8):
+        output = simulate(NOMINAL.with_values(hill), STEPS, TIME[:50], angle)
+        assert np.all((output >= 0.42) & (output <= 4.52))
 
 
 def test_a_comparison_with_such_a_model_says_so_in_one_line():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pierburg_ros.fleets.course import Course
+from pierburg_ros.fleets.ageing.course import Course
 
 
 def course(time, value, deviation, temperature=None, limited=None, unit="valve-1", quantity="armature_resistance"):

@@ -5,8 +5,8 @@ from datetime import datetime, timedelta, timezone
 import numpy as np
 
 from pierburg_ros.fleets.fleet import fleet_of
+from pierburg_ros.fleets.recordings.units import Source
 from pierburg_ros.fleets.run import Examined
-from pierburg_ros.fleets.units import Source
 from pierburg_ros.library.model import Model
 
 BEGIN = datetime(2025, 1, 1, tzinfo=timezone.utc)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +23,14 @@ def forgotten(effects: Iterable[str]) -> bool:
     return all(EFFECT[effect].memory != "lasting" for effect in effects)
 
 
+def in_stretches(data: Data, length: float) -> Data:
+    """`data` in stretches of `length` [s], unless its runs begin again and again anyway.
+
+    They do where nothing makes an actuator forget how it began: there so long a stretch may end anywhere.
+    """
+    return data if any(run.shooting for run in data.runs) else restarted(data, length)
+
+
 def restarted(data: Data, length: float) -> Data:
     """`data` with every run cut into stretches of `length` [s], each starting at the measured angle and velocity.
 
@@ -32,6 +40,33 @@ def restarted(data: Data, length: float) -> Data:
         stretch for run in data.runs for stretch in _stretches(run, motion_of(run, data.actuator, data.noise), length)
     )
     return replace(data, runs=runs)
+
+
+def leading_to(data: Data, length: float, last: float) -> Data:
+    """Stretches of `length` [s], each from the measured angle and velocity, that lead to the samples that test.
+
+    Each leads to those within its `last` [s]; its others train. A sample too near the beginning of its run has none.
+    """
+    runs = tuple(
+        stretch
+        for run in data.runs
+        for stretch in _leading(run, motion_of(run, data.actuator, data.noise), length, last)
+    )
+    return replace(data, runs=runs)
+
+
+def _leading(run: Run, motion: Motion, length: float, last: float) -> Iterator[Run]:
+    test = ~(run.train | run.validation)
+    number = np.floor((run.time - run.time[0] - (length - last)) / last + 1e-9).astype(int)
+    for part in np.unique(number[test & (number >= 0)]).tolist():
+        inside = np.flatnonzero(test & (number == part))
+        first = int(np.searchsorted(run.time, run.time[0] + part * last - 1e-9))
+        if inside[-1] + 1 - first < SETTLED:
+            continue
+        stretch = run.part(slice(first, int(inside[-1]) + 1))
+        train = np.ones(stretch.time.size, dtype=bool)
+        train[inside - first] = False
+        yield replace(stretch.trained_on(train), start=_start(run, motion, first), shooting=None)
 
 
 def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:

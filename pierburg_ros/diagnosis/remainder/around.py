@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.diagnosis.remainder.turn import repeated, with_lesser_orders
+from pierburg_ros.arrays import Flags
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.supported import Supported, Weight
 from pierburg_ros.effects import Effect
-from pierburg_ros.estimation.data import Data, rms
+from pierburg_ros.estimation.data import Data, all_training, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.torque_balance import Balance
+from pierburg_ros.estimation.turn import repeated, with_lesser_orders
 from pierburg_ros.plant import Model
 
-BETTER = 0.9
-"""Share of the error of the recalibrated model on samples that validate, to which a named effect with its overtones
-must bring it. Given: a name only where unseen data improve by a tenth."""
+
+@dataclass(frozen=True)
+class _Around:
+    """The strongest order as an effect, fitted beside drifts to a nominal model with the `lesser` orders."""
+
+    lesser: Model
+    fit: Fit
+    variant: Variant
+    balance: Balance
 
 
 def supported_around(data: Data, nominal: Model, recalibrated: Fit) -> Supported | None:
@@ -29,31 +39,53 @@ def supported_around(data: Data, nominal: Model, recalibrated: Fit) -> Supported
     far once in a hundred recordings. Its weight is its share of the mean square of the torque, beside what no order
     makes up. Without overtones a search finds it as any other effect.
     """
+    around, seen = _around(data, nominal), data.validation
+    if around is None or _error(data, around.fit, seen) > BETTER * _error(data, recalibrated, seen):
+        return None
+    amplitude = math.hypot(*around.balance.strongest[:2])
+    samples = int(np.count_nonzero(data.train))
+    weight = Weight(samples * 0.5 * (amplitude / around.balance.left) ** 2, float(samples))
+    return Supported(around.lesser, scored(data, around.fit), {around.variant: weight})
+
+
+def vouched_around(data: Data, nominal: Model) -> LeftOut | None:
+    """What each of several recordings says of that effect when it is fitted to the others; None unless that is for it.
+
+    The error on recordings left out has to fall as far as that on samples that validate.
+    """
+    every, errors, drifts = all_training(data), [], Explanation(drifting(nominal))
+    names = {run.number: run.name for run in data.runs}
+    for number in names:
+        rest, left = every.without(number), every.only(number)
+        around, bare = _around(rest, nominal), Estimator(rest, nominal).fit(drifts, iterations=BRIEF)
+        errors.append([_error(left, fit, left.train) for fit in (bare, around.fit if around else bare)])
+    without, beside = (np.array(each) * data.noise for each in zip(*errors, strict=True))
+    helped = tuple(name for name, better in zip(names.values(), beside < without, strict=True) if better)
+    before, after = (float(np.exp(np.mean(np.log(each)))) for each in (without, beside))
+    return LeftOut(before, after, len(helped), len(names), helped) if after <= BETTER * before else None
+
+
+def _around(data: Data, nominal: Model) -> _Around | None:
     found, effect = repeated(data, nominal), _over_the_angle(nominal)
     if found is None or effect is None or found.orders.size < 2:
         return None
     ripple = effect.ripple
     assert ripple is not None
     cosine, sine, order = found.strongest
-    amplitude = math.hypot(cosine, sine)
     values = {
         "coulomb_friction": found.friction,
-        f"{effect.id}.{ripple.amplitude}": amplitude,
+        f"{effect.id}.{ripple.amplitude}": math.hypot(cosine, sine),
         f"{effect.id}.{ripple.rhythm}": order / nominal.values.get("gear_ratio", 1.0),
         f"{effect.id}.{ripple.phase}": math.atan2(cosine, sine),
     }
     variant = Variant(effect.id, (ripple.amplitude, ripple.rhythm, ripple.phase))
-    beside = with_lesser_orders(data, nominal)
+    lesser = with_lesser_orders(data, nominal)
     explanation = Explanation(drifting(nominal), (variant,))
     held = f"{effect.id}.{ripple.rhythm}"
     start = {**nominal.values, **values}
     # where the shaft is caught in motion errors are large, and say little
-    fit = Estimator(data, beside).fit(explanation, start, BRIEF, held=held, forgiving=True)
-    if _error(data, fit) > BETTER * _error(data, recalibrated):
-        return None
-    samples = int(np.count_nonzero(data.train))
-    weight = Weight(samples * 0.5 * (amplitude / found.left) ** 2, float(samples))
-    return Supported(beside, scored(data, fit), {variant: weight})
+    fit = Estimator(data, lesser).fit(explanation, start, BRIEF, held=held, forgiving=True)
+    return _Around(lesser, fit, variant, found)
 
 
 def _over_the_angle(nominal: Model) -> Effect | None:
@@ -62,5 +94,5 @@ def _over_the_angle(nominal: Model) -> Effect | None:
     return next(sines, None)
 
 
-def _error(data: Data, fit: Fit) -> float:
-    return rms(data.residual(fit.model, fit.switch)[data.validation])
+def _error(data: Data, fit: Fit, samples: Flags) -> float:
+    return rms(data.residual(fit.model, fit.switch)[samples])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pierburg_ros.diagnosis.evidence.stretches import restarted
+from pierburg_ros.diagnosis.evidence.stretches import in_stretches
 from pierburg_ros.diagnosis.remainder.shape import STRETCH, Way
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
@@ -23,9 +23,9 @@ def recalibrations(nominal: Model, explanation: Explanation) -> list[Way]:
         return Estimator(data, nominal).fit(explanation).model
 
     def stretches(data: Data) -> Model:
-        return Estimator(restarted(data, STRETCH * data.scales.time), nominal).fit(explanation).model
+        return Estimator(in_stretches(data, STRETCH * data.scales.time), nominal).fit(explanation).model
 
     def forgiving(data: Data) -> Model:
-        return Estimator(restarted(data, STRETCH * data.scales.time), nominal).fit(explanation, forgiving=True).model
+        return Estimator(in_stretches(data, STRETCH * data.scales.time), nominal).fit(explanation, forgiving=True).model
 
     return [described, whole, stretches, forgiving]

@@ -7,10 +7,11 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.deadline import Deadline
-from pierburg_ros.diagnosis.remainder.around import supported_around
+from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
-from pierburg_ros.diagnosis.remainder.shared import LeftOut, shared_effects
+from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
 from pierburg_ros.diagnosis.search.tried import Progress
@@ -22,9 +23,6 @@ from pierburg_ros.workers import workers
 SHARED = 0.6
 """Share of the time that is left in which effects are added that several recordings share. Work: the rest is for
 intervals and for the shape of what remains; not varied."""
-CONFIRMED = 0.9
-"""Share of the error on validation samples to which a residual torque must bring it to be kept. Measured: it keeps the
-shape of practice-20 out, which made the validation error worse, and those of three of n = 4 splits of real runs in."""
 
 
 @dataclass(frozen=True)
@@ -52,21 +50,26 @@ def remainder(
 ) -> Remainder:
     """Physics beyond one explanation, and the shape of what is left.
 
-    Several recordings vouch for effects that each lower the error on recordings left out, a single one for quantities
-    that unseen samples confirm when the evidence is counted against what remains. What is then left is fitted as a
-    torque over angle and velocity, kept where unseen data confirm it.
+    What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
+    on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
+    what remains. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
     deadline = deadline or Deadline()
-    shared = shared_effects(found, progress, jobs, deadline.part(SHARED)) if data.several else None
+    around = supported_around(data, found.nominal, recalibrated)
+    vouched = vouched_around(data, found.nominal) if around and data.several else None
+    searched = data.several and vouched is None
+    shared = shared_effects(found, progress, jobs, deadline.part(SHARED)) if searched else None
     with workers(jobs, deadline) as pool:
         if shared is not None:
             fit, left_out = shared
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif stood := _stood(found, pool, progress):
+        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found):
             left_out, weights = {}, _by_effect(stood)
+            if vouched is not None:
+                left_out, weights = dict.fromkeys(weights, vouched), {}
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
             base = estimator.restated(stood.scored.fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
@@ -76,14 +79,25 @@ def remainder(
             drifted = Explanation() if shape.base is found.nominal else explanation
             base = estimator.at(drifted, shape.base.values)
         known = estimates(estimator, base, pool.map)
-    confirmed = shape.after < CONFIRMED * shape.before
+    confirmed = shape.after < BETTER * shape.before
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What a single recording supports: what repeats itself with every turn, or what unseen samples confirm."""
-    around = supported_around(found.data, found.nominal, found.recalibrated)
-    return around or (found.beside or supported(found.data, found.nominal, pool, progress)).named
+    """What unseen samples of a single recording confirm."""
+    return (found.beside or supported(found.data, found.nominal, pool, progress)).named
+
+
+def _doubtful(stood: Supported, found: Found) -> bool:
+    """Whether the recalibrated model does better, or hardly worse, where a simulation begins again and again.
+
+    An error there is no bad luck, and it has to do worse by a tenth on samples that validate. What was read from the
+    samples themselves, without a free number, stands on no simulation.
+    """
+    if not (stood.scored.fit.explanation.names and any(run.shooting for run in found.data.runs)):
+        return False
+    own = Estimator(found.data, stood.nominal).validation_misfit(stood.scored.fit)
+    return own > BETTER**2 * found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

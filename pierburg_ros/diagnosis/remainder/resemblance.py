@@ -10,18 +10,17 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Discrepancy
+from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 
 BINS = 16
 """Ranges of equal time into which a variable is cut. Chosen: a shape with eight half waves still shows; not varied."""
-BLOCK = 2.0
-"""Length of the blocks [s] that are put in random order. Chosen: longer than the valve forgets; not varied."""
+BLOCK = 21.0
+"""Length of the blocks that are put in random order, in the actuator's own time. Chosen: 2 s for the valve, longer than
+it remembers; not varied."""
 ORDERS = 30
 """Random orders that say what a variable explains by chance. Work: a mean of 30 is known to a fifth of their spread."""
-HIDDEN = 0.3
-"""What remains, over the noise, below which it is not told from it. Derived: it makes the error 4 % larger, and the
-noise estimate is that uncertain (`EXPLAINED`)."""
 CLEAR = 0.1
 """Least share of what remains, above chance, that makes a resemblance. Chosen: less helps nobody to look there; not
 varied."""
@@ -33,12 +32,15 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
     The variable over whose ranges the mean of the residual varies most, beyond what it does with the residual's blocks
     in random order.
     """
-    above = math.sqrt(max(rms(residual) ** 2 - data.noise**2, 0.0))
-    if above < HIDDEN * data.noise:
+    if rms(residual) < EXPLAINED * data.noise:
         return "nothing that is told from the noise"
+    above = math.sqrt(rms(residual) ** 2 - data.noise**2)
     size = f"{above:.2g} {data.actuator.unit}"
     motion = motion_of(run, data.actuator, data.noise)
-    shares = {name: _beyond_chance(values, residual, run.time) for name, values in _variables(motion, data).items()}
+    shares = {
+        name: _beyond_chance(values, residual, (run.time - run.time[0]) / data.scales.time)
+        for name, values in _variables(motion, data).items()
+    }
     name, share = max(shares.items(), key=lambda pair: pair[1])
     reach = math.degrees(discrepancy.reach * data.noise * data.angle_per_unit)
     lasting = f"about {size} that lasts for {discrepancy.memory:.2g} s at rest and for {reach:.3g} degrees of movement"
@@ -64,11 +66,14 @@ def _variables(motion: Motion, data: Data) -> dict[str, Signal]:
 
 
 def _beyond_chance(values: Signal, residual: Signal, time: Signal) -> float:
-    """Share of the residual's variance that its means over ranges of a variable hold, less what they hold by chance."""
+    """Share of the residual's variance that its means over ranges of a variable hold, less what they hold by chance.
+
+    The `time` is the actuator's own.
+    """
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)[1:-1]))
     place = np.searchsorted(edges, values, side="right")
     random = np.random.default_rng(0)
-    block = ((time - time[0]) / BLOCK).astype(int)
+    block = (time / BLOCK).astype(int)
     orders = (np.argsort(random.permutation(block[-1] + 1)[block], kind="stable") for _ in range(ORDERS))
     chance = np.mean([_held(place, residual[order]) for order in orders])
     return float((_held(place, residual) - chance) / max(1.0 - chance, 1e-9))

@@ -14,11 +14,11 @@ from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
-from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
-from pierburg_ros.diagnosis.remainder.turn import described_turn, with_turn
+from pierburg_ros.diagnosis.evidence.stretches import forgotten, in_stretches
 from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
 from pierburg_ros.estimation.least_squares import BRIEF, minimise
+from pierburg_ros.estimation.turn import described_turn, with_turn
 from pierburg_ros.plant import Model
 
 ANGLES = 7
@@ -100,7 +100,7 @@ def _left_out(data: Data, way: Way) -> float:
     """
     inner = held_back(data)
     length = STRETCH * data.scales.time
-    stretches, trained = restarted(data, length), restarted(inner, length).train
+    stretches, trained = in_stretches(data, length), in_stretches(inner, length).train
     base = way(inner)
 
     def error(model: Model) -> float:
@@ -121,7 +121,7 @@ def _fitted(data: Data, base: Model) -> Model:
     if (turning := with_turn(data, base.with_residual(None))) is not None:
         return turning
     own = data.scales.torque
-    stretches = restarted(data, STRETCH * data.scales.time) if forgotten(base.active_effects) else data
+    stretches = in_stretches(data, STRETCH * data.scales.time) if forgotten(base.active_effects) else data
     training = stretches.train
     angle, velocity = nodes(data)
     prior = WEIGHT * _prior(angle.size, velocity.size)

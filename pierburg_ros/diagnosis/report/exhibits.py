@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.report.tried import OFF, rivals
 from pierburg_ros.diagnosis.result import Exhibits, Tried, View
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
@@ -42,7 +42,7 @@ def switched_off(data: Data, conclusion: Conclusion) -> list[tuple[Tried, Model]
     """The final model without one of its effects, all else left as it is, for each of them."""
     rows = []
     for effect in conclusion.final.explanation.effects:
-        model = conclusion.model.with_values({f"{effect}.{name}": 0.0 for name in EFFECT[effect].names})
+        model = without_effects(conclusion.model, [effect])
         residual = data.residual(model, conclusion.final.switch) * data.noise
         train, test = (
             float(np.sqrt(np.mean(residual[samples] ** 2))) if samples.any() else None

@@ -25,8 +25,8 @@ MEANINGS = {
     "final": "diagnosed model",
 }
 MODELS = ("nominal", "recalibrated", "final")
-LAGS = 1.0
-"""Longest lag [s] of an autocorrelation. Chosen: about the time in which the valve forgets."""
+LAGS = 0.02
+"""Longest lag of an autocorrelation, as a share of the first recording. Chosen: a second of a minute."""
 SCATTERED = 1500
 """Points of an error over angle or velocity. Work: more lie on top of each other."""
 NUMBERED = 6
@@ -112,7 +112,7 @@ def autocorrelation_figure(views: Sequence[View]) -> go.Figure:
 def autocorrelation(views: Sequence[View], key: str) -> tuple[Signal, Signal, int]:
     """Lag [s], autocorrelation of an error by name, and the samples that it comes from."""
     interval = float(np.median(np.diff(views[0].time)))
-    count = min(max(int(LAGS / interval), 2), *(view.time.size // 2 for view in views))
+    count = min(max(int(LAGS * views[0].time.size), 2), *(view.time.size // 2 for view in views))
     total = np.zeros(count)
     for view in views:
         error = view.errors[key] - np.mean(view.errors[key])

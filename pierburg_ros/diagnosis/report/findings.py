@@ -44,6 +44,7 @@ from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
 from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Fit
@@ -275,9 +276,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
     residual = run.measured - run.simulated(conclusion.recalibrated.model)
     mark = residual
     if final.explanation.variants:
-        bare = final.model.with_values(
-            {f"{v.effect}.{name}": 0.0 for v in final.explanation.variants for name in EFFECT[v.effect].names}
-        )
+        bare = without_effects(final.model, [variant.effect for variant in final.explanation.variants])
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
     found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
     return locations(motion, residual, found), regimes(motion, residual)

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
-from pierburg_ros.diagnosis.evidence.stretches import restarted
+from pierburg_ros.diagnosis.evidence.stretches import leading_to, restarted
 from pierburg_ros.diagnosis.schema import Horizon
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.run import Switch
@@ -24,17 +22,13 @@ Simulated = tuple[Model, Switch | None]
 def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
     """RMSE of the nominal, the recalibrated and the final model after each of `HORIZONS`, and over whole runs.
 
-    On all samples: those that test are too few to stand at the end of the longer stretches. What a model remembers
-    (heat, play) starts afresh with each stretch.
+    On samples that test, that neither fit nor choice has used: each stands in the last part of a stretch. What a model
+    remembers (heat, play) starts afresh with each stretch.
     """
     found = []
     for after in (*HORIZONS, math.inf):
-        stretches = restarted(data, after) if math.isfinite(after) else data
-        late = [
-            run.time - run.time[0] > (1.0 - LAST) * after if math.isfinite(after) else np.ones(run.time.size, bool)
-            for run in stretches.runs
-        ]
-        samples = np.concatenate(late)
+        stretches = leading_to(data, after, LAST * after) if math.isfinite(after) else restarted(data, after)
+        samples = stretches.test
         errors = [
             rms(stretches.residual(*model)[samples]) * data.noise if samples.any() else math.nan for model in models
         ]

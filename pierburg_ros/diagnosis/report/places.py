@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.schema import Location
 
-APART = 0.3
-"""Windows less than this apart [s] are shown as one. Chosen: on a plot of a minute they touch."""
+APART = 0.005
+"""Windows apart by less than this share of the time from the first to the last are shown as one. Chosen: on a plot as
+wide as a page they touch."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,10 @@ class Place:
 def places(locations: Sequence[Location]) -> list[Place]:
     """The windows with neighbours merged, sorted by their share; what the larger part does is said of the whole."""
     merged: list[list[Location]] = []
+    ends = [moment for each in locations for moment in (each.start, each.end)]
+    apart = APART * (max(ends) - min(ends)) if ends else 0.0
     for each in sorted(locations, key=lambda place: place.start):
-        if merged and each.start - merged[-1][-1].end < APART:
+        if merged and each.start - merged[-1][-1].end < apart:
             merged[-1].append(each)
         else:
             merged.append([each])

@@ -76,4 +76,4 @@ def _errors(diagnosis: Diagnosis) -> Listing:
         )
         for label, errors in (("fitted data", diagnosis.fit.training), ("unseen data", diagnosis.fit.validation))
     ]
-    return Listing((f"RMSE [{diagnosis.unit}]", "nominal", "recalibrated", "final", "noise"), rows)
+    return Listing((f"RMSE [{diagnosis.unit}]", "as described", "re-estimated", "diagnosed", "noise"), rows)

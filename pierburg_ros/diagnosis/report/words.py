@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
-from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support

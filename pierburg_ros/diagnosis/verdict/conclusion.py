@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.remainder.shape import Shape
-from pierburg_ros.diagnosis.remainder.shared import LeftOut
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.supported import Weight

@@ -13,18 +13,31 @@ from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.motion.body import PARTED, Line, after, balance, error, piece, share, torque_at, turn
-from pierburg_ros.plant.motion.events import allowed, lower, motor_onset, next_step, shorter, shortest, upper
+from pierburg_ros.plant.motion.events import (
+    CORRECTED,
+    EVEN,
+    beyond,
+    lower,
+    motor_onset,
+    next_step,
+    shorter,
+    shortest,
+    upper,
+)
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.friction import level
 
 FLOOR = 1e-4
-"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0."""
-EVEN = 0.02
-"""Longest step of a shaft that stands, as a share of the period of a pulsating load."""
+"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0.
+
+Standing or sliding: teeth that damp a sliding shaft alone would send it back at once where they set it moving."""
 
 
 class Sides(NamedTuple):
-    """Where a step has brought the two sides: travel [rad], velocity [rad/s], current [A], teeth [N.m], error [rad]."""
+    """Where a step has brought the two sides: travel [rad], velocity [rad/s], current [A], teeth [N.m], error [rad].
+
+    And how far their bristles lean [rad].
+    """
 
     motor_travel: float
     motor_velocity: float
@@ -33,6 +46,8 @@ class Sides(NamedTuple):
     velocity: float
     teeth: float
     wrong: float
+    bristle: float
+    motor_bristle: float
 
 
 class Grip(NamedTuple):
@@ -68,7 +83,7 @@ def _grip(p, s, twist, rate, angle, velocity, bristle, time):
     pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
     if p.backlash.gap > 0.0 and not pushes:
         return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.least_damping(p)))
-    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness - viscous) if s.direction != 0.0 else gear.damping
+    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness)
     return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous)
 
 
@@ -97,29 +112,39 @@ def _felt(s, grip):
 
 
 @kernel
-def _follow(s, grip, step, motor_velocity):
-    """Travel of the shaft [rad] and its velocity [rad/s] after `step` [s] of the motor turning evenly."""
+def _follow(s, grip, step, motor_velocity, rate, faded):
+    """Travel of the shaft [rad] and its velocity [rad/s] after `step` [s] of the motor turning evenly.
+
+    It follows at `rate` [1/s], by which its start has `faded`.
+    """
     start = _velocity(s, grip, motor_velocity)
-    rate = _rate(grip)
     if s.direction == 0.0 or abs(rate) * step < 1e-9:
         return start * step, start
     even = grip.stiffness * motor_velocity / (grip.stiffness + grip.bending)
-    faded = math.expm1(-rate * step)
     return even * step - (start - even) * faded / rate, start + (start - even) * faded
 
 
 @kernel
-def _rate(grip):
-    """Rate [1/s] at which the shaft follows the motor."""
-    return (grip.stiffness + grip.bending) / (grip.damping + grip.viscous)
+def _missed(grip, reached, moved, velocity):
+    """Resistance [N.m] of the shaft that the straight line misses at the end of a step."""
+    missed = reached.resisting - grip.resisting - grip.bending * moved
+    return missed + (reached.viscous - grip.viscous) * velocity
 
 
 @kernel
-def _astray(grip, reached, step, moved, velocity):
-    """Angle [rad] by which the shaft may be wrong, from the resistance that the straight line misses at the end."""
-    missed = reached.resisting - grip.resisting - grip.bending * moved
-    missed += (reached.viscous - grip.viscous) * velocity
-    rate = _rate(grip)
+def grown(reach, faded):
+    """Mean over a step of exp(-reach (1 - t)) t^2, t from 0 to 1; `faded` is exp(-reach) - 1.
+
+    So much of the travel does a resistance add that has come up with the square of time.
+    """
+    if abs(reach) < 0.03:
+        return 1.0 / 3.0 - reach * (1.0 / 12.0 - reach / 60.0)
+    return (reach - 2.0 * (faded + reach) / reach) / (reach * reach)
+
+
+@kernel
+def _astray(grip, rate, step, missed):
+    """Angle [rad] by which the shaft may be wrong that has `missed` this resistance [N.m] at the end."""
     memory = min(step, 1.0 / rate) if rate > 0.0 else step
     return 0.5 * abs(missed) / (grip.damping + grip.viscous) * memory
 
@@ -137,7 +162,7 @@ def _motor_stands(p, s):
 
 @kernel
 def _motor_bristle(p, s, travel):
-    if p.presliding.stiffness == 0.0 or travel == 0.0:
+    if p.presliding.stiffness == 0.0 or travel == 0.0 or share(p, PARTED) == 0.0:
         return s.presliding.motor_bristle
     motor = torque_at(p, s, s.motor_velocity, s.current)
     friction = level(p, s.motor_direction, s.motor_velocity, s.motor_angle, motor)[0]
@@ -169,19 +194,34 @@ def _motor_piece(p, s, line, step):
 def _trial(p, s, grip, line, step):
     """Where `step` [s] would bring the two sides."""
     travel, ended, amperes = _motor_piece(p, s, line, step)
-    moved, velocity = _follow(s, grip, step, travel / step)
+    rate, faded = 0.0, 0.0
+    if s.direction != 0.0:
+        rate = (grip.stiffness + grip.bending) / (grip.damping + grip.viscous)
+        faded = math.expm1(-rate * step)
+    moved, velocity = _follow(s, grip, step, travel / step, rate, faded)
     time = s.time + step
     bristle = shaft.bristle_after(p, s, moved) if s.direction != 0.0 else s.presliding.bristle
     twist = s.motor_angle + travel - s.angle - moved
     reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time)
+    missed = 0.0
+    if s.direction != 0.0:
+        missed = _missed(grip, reached, moved, velocity)
+        more = -missed / (grip.damping + grip.viscous) * step * grown(rate * step, faded)
+        moved += more
+        bristle = shaft.bristle_after(p, s, moved)
+        deflection, resisting = reached.deflection - more, reached.resisting + reached.bending * more
+        reached = Grip(deflection, reached.stiffness, reached.damping, resisting, reached.bending, reached.viscous)
     velocity = _velocity(s, reached, ended)
     teeth = _teeth(reached, ended, velocity)
-    actual = _motor(p, s, s.motor_angle + travel, ended, time, amperes, _motor_bristle(p, s, travel)).force - teeth
-    expected = after(p, line, step, travel, ended - s.motor_velocity, amperes - s.current)
-    wrong = 0.0 if _motor_stands(p, s) else error(p, s, line, step, actual, expected)
+    motor_bristle = _motor_bristle(p, s, travel)
+    wrong = 0.0
+    if not _motor_stands(p, s):
+        actual = _motor(p, s, s.motor_angle + travel, ended, time, amperes, motor_bristle).force - teeth
+        expected = after(p, line, step, travel, ended - s.motor_velocity, amperes - s.current)
+        wrong = error(p, s, line, step, actual - expected)
     if s.direction != 0.0:
-        wrong += _astray(grip, reached, step, moved, velocity)
-    return Sides(travel, ended, amperes, moved, velocity, teeth, wrong)
+        wrong += _astray(grip, rate, step, missed) / CORRECTED
+    return Sides(travel, ended, amperes, moved, velocity, teeth, wrong, bristle, motor_bristle)
 
 
 @kernel
@@ -207,7 +247,7 @@ def move(p, s, remaining):
         step = max(min(step, EVEN / p.external_load.frequency), shortest(p))
     while True:
         sides = _trial(p, s, grip, line, step)
-        excess = max(sides.wrong / allowed(p, sides.motor_travel), abs(sides.motor_travel) / p.finest)
+        excess = max(beyond(p, sides.wrong, sides.motor_travel), abs(sides.motor_travel) / p.finest)
         if not excess > 1.0 or step <= shortest(p):
             break
         step = shorter(p, step, excess)
@@ -223,6 +263,8 @@ def move(p, s, remaining):
 @kernel
 def _set_directions(p, s):
     """Decide whether the standing sides begin to move."""
+    if s.direction != 0.0 and not _motor_stands(p, s):
+        return
     twist = s.motor_angle - s.angle
     grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, 0.0, s.presliding.bristle, s.time)
     if s.direction == 0.0:
@@ -246,9 +288,7 @@ def _breaking_time(p, s, grip, line, step):
 @kernel
 def _take(p, s, sides, step, breaks):
     """Accept a step."""
-    if s.direction != 0.0:
-        s.presliding.bristle = shaft.bristle_after(p, s, sides.travel)
-    s.presliding.motor_bristle = _motor_bristle(p, s, sides.motor_travel)
+    s.presliding.bristle, s.presliding.motor_bristle = sides.bristle, sides.motor_bristle
     s.motor_angle += sides.motor_travel
     s.motor_velocity, s.current = sides.motor_velocity, sides.current
     if sides.motor_velocity * s.motor_direction < 0.0:

@@ -10,17 +10,25 @@ import math
 
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
-from pierburg_ros.plant.gear.rigid import slide_joined
-from pierburg_ros.plant.motion.body import JOINED, PARTED, balance, piece
-from pierburg_ros.plant.motion.events import hold, lower, motor_onset, onset, shortest, slide, upper
+from pierburg_ros.plant.gear.rigid import joined, slide_joined
+from pierburg_ros.plant.motion.body import PARTED, balance, piece
+from pierburg_ros.plant.motion.events import (
+    even,
+    hold,
+    loaded,
+    lower,
+    motor_onset,
+    onset,
+    shortest,
+    slide,
+    standing_time,
+    upper,
+)
 from pierburg_ros.plant.torques.drive import relaxed_current
 
 TURNS = 1e-4
 """Motor and shaft that both move on their own do so in turns of this share of the actuator's own time; at no-load speed
 that is a ten-thousandth of the travel a turn."""
-WATCH = 2e-3
-"""A shaft that stands between parted teeth is looked at again after this share of the actuator's own time where its
-load changes."""
 
 
 @kernel
@@ -39,7 +47,8 @@ def move(p, s, remaining):
     if _torn(p, s, s.angle, s.velocity, s.presliding.bristle, s.time):
         _part(s, s.direction)
         return 0.0
-    return slide_joined(p, s, _tearing_time(p, s, remaining))
+    line = joined(p, s)
+    return slide_joined(p, s, line, _tearing_time(p, s, line, remaining))
 
 
 @kernel
@@ -66,9 +75,8 @@ def _torn(p, s, angle, velocity, bristle, time):
 
 
 @kernel
-def _tearing_time(p, s, remaining):
+def _tearing_time(p, s, line, remaining):
     """How long [s] the flanks stay together: not longer than one internal step is good for."""
-    line = balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.presliding.bristle)
     late = remaining if p.plain else min(remaining, max(s.step, shortest(p)))
     if not _tears(p, s, line, late):
         return late
@@ -97,8 +105,8 @@ def _move_parted(p, s, remaining):
         s.motor_direction = motor_onset(p, s, 0.0, s.current)
     if s.direction != 0.0:
         return _take_turns(p, s, min(remaining, TURNS * p.own.time))
-    if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
-        remaining = min(remaining, WATCH * p.own.time)
+    if loaded(p):
+        remaining = _standing_shaft(p, s, remaining)
     if s.motor_direction == 0.0:
         return _wait(p, s, remaining)
     used, meets = _turn_motor(p, s, s.angle - p.backlash.gap, s.angle, remaining)
@@ -108,10 +116,28 @@ def _move_parted(p, s, remaining):
 
 
 @kernel
+def _standing_shaft(p, s, remaining):
+    """How much of `remaining` [s] the shaft stands under a load that changes, as its motor turns now."""
+    step = even(p, s, remaining)
+    if shaft.onset(p, s, 0.0, s.angle, s.time + step) == 0.0:
+        return step
+    early, late = 0.0, step
+    while late - early > shortest(p):
+        middle = 0.5 * (early + late)
+        if shaft.onset(p, s, 0.0, s.angle, s.time + middle) == 0.0:
+            early = middle
+        else:
+            late = middle
+    return late
+
+
+@kernel
 def _turn_motor(p, s, low, high, remaining):
     """Turn the motor alone between `low` and `high` [rad]; gives the time used and whether it got to either."""
+    angle, velocity, direction = s.motor_angle, s.motor_velocity, s.motor_direction
+    line = balance(p, s, PARTED, angle, velocity, direction, s.time, s.current, s.presliding.motor_bristle)
     used, s.motor_angle, velocity, rests, meets = slide(
-        p, s, PARTED, s.motor_angle, s.motor_velocity, s.motor_direction, low, high, remaining
+        p, s, PARTED, angle, velocity, direction, low, high, line, remaining
     )
     s.motor_velocity = velocity
     if rests:
@@ -145,10 +171,10 @@ def _bring_together(p, s, angle, flank):
 
 @kernel
 def _wait(p, s, remaining):
-    """Let the motor stand with its teeth parted: nothing of it moves but the current and the time."""
+    """Let the motor stand with its teeth parted, until the current sets it moving: only that and the time change."""
     step = remaining
     if p.armature_inductance.inductance != 0.0:
-        step = min(step, 0.1 * p.armature_inductance.inductance / p.armature_resistance)
+        step = standing_time(p, s, PARTED, remaining)
         s.current = relaxed_current(p, s, step)
     s.time += step
     return step

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pierburg_ros.kernel import kernel
-from pierburg_ros.plant.motion.body import JOINED
+from pierburg_ros.plant.motion.body import JOINED, balance
 from pierburg_ros.plant.motion.events import hold, lower, onset, slide, upper
 
 
@@ -14,15 +14,21 @@ def move(p, s, remaining):
         s.direction = onset(p, s, s.time, s.current)
         if s.direction == 0.0:
             return hold(p, s, remaining)
-    return slide_joined(p, s, remaining)
+    return slide_joined(p, s, joined(p, s), remaining)
 
 
 @kernel
-def slide_joined(p, s, remaining):
+def joined(p, s):
+    """Net torque on motor and shaft as one, as a straight line."""
+    return balance(p, s, JOINED, s.angle, s.velocity, s.direction, s.time, s.current, s.presliding.bristle)
+
+
+@kernel
+def slide_joined(p, s, line, remaining):
     """Slide as one body for at most `remaining` [s], up to the next event; gives the time used."""
     twist = s.motor_angle - s.angle
     used, angle, velocity, rests, stops = slide(
-        p, s, JOINED, s.angle, s.velocity, s.direction, lower(p), upper(p), remaining
+        p, s, JOINED, s.angle, s.velocity, s.direction, lower(p), upper(p), line, remaining
     )
     s.angle, s.motor_angle = angle, angle + twist
     if rests or stops:

@@ -10,9 +10,9 @@ import math
 from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.motion.body import PARTED, share, torque_at
-from pierburg_ros.plant.motion.events import lower, upper
-from pierburg_ros.plant.torques.friction import damping, hold, level
-from pierburg_ros.plant.torques.load import load
+from pierburg_ros.plant.motion.events import lower, off_stops, upper
+from pierburg_ros.plant.torques.friction import breakaway, damping, level
+from pierburg_ros.plant.torques.load import load, outside
 
 LEAST_DAMPING = 6e-5
 """Damping of a shaft that nothing damps, as a share of stall torque over no-load speed: a hundredth of the one moves it
@@ -36,19 +36,15 @@ def onset(p, s, tooth, angle, time):
     """Direction in which the standing shaft begins to move under the `tooth` torque [N.m]; 0 where it is held."""
     own = own_share(p)
     motor = torque_at(p, s, s.motor_velocity, s.current)
-    net = tooth - load(p, angle, 0.0, time)[0]
-    if net > hold(p, own, 1.0, angle, motor, s.presliding.bristle) and angle < upper(p):
-        return 1.0
-    if net < -hold(p, own, -1.0, angle, motor, s.presliding.bristle) and angle > lower(p):
-        return -1.0
-    return 0.0
+    net = tooth - load(p, angle, 0.0, outside(p, s, time))[0]
+    return off_stops(p, breakaway(p, own, net, angle, motor, s.presliding.bristle), angle)
 
 
 @kernel
 def resistance(p, s, angle, velocity, bristle, time):
     """What resists the sliding shaft: torque at rest [N.m], stiffness [N.m/rad], damping [N.m.s/rad]."""
     own = own_share(p)
-    torque, stiffness, by_velocity, _ = load(p, angle, velocity, time)
+    torque, stiffness, by_velocity, _ = load(p, angle, velocity, outside(p, s, time))
     motor = torque_at(p, s, s.motor_velocity, s.current)
     friction, _, by_angle, _ = level(p, s.direction, velocity, angle, motor)
     resisting = own * damping(p, s.direction) + by_velocity

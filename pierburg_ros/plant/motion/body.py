@@ -12,7 +12,7 @@ from pierburg_ros.plant.motion.steady import ALIKE
 from pierburg_ros.plant.motion.third_order import third_responses
 from pierburg_ros.plant.torques.drive import motor_torque
 from pierburg_ros.plant.torques.friction import damping, level
-from pierburg_ros.plant.torques.load import load, ripple
+from pierburg_ros.plant.torques.load import load, outside, ripple
 
 JOINED = 0
 """Motor and shaft move as one."""
@@ -22,6 +22,9 @@ PARTED = 1
 
 STILL = 6e-11
 """Swings of the velocity smaller than this share of the no-load speed are none."""
+UNMOVED = 1e-11
+"""Swings of the angle smaller than this share of the travel are none: the rounding of an angle is only a thousand times
+smaller, and a stiff gear that swings within it never comes to an end. A step may be wrong by far more."""
 
 
 class Line(NamedTuple):
@@ -67,11 +70,13 @@ def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
     """
     motor = torque_at(p, s, velocity, amperes)
     part = share(p, kind)
-    friction, by_velocity, by_angle, by_torque = level(p, direction, velocity, angle, motor)
+    friction = by_velocity = by_angle = by_torque = 0.0
+    if part > 0.0:
+        friction, by_velocity, by_angle, by_torque = level(p, direction, velocity, angle, motor)
     viscous = part * damping(p, direction)
     pulled = stiffness = by_load_velocity = rate = 0.0
     if kind == JOINED:
-        pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, time)
+        pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, outside(p, s, time))
     if p.cogging_torque.amplitude != 0.0:
         lead = s.motor_angle - s.angle if kind == JOINED else 0.0
         torque, slope = ripple(p, angle + lead)
@@ -94,10 +99,10 @@ def piece(p, s, step, velocity, line):
     """Travel [rad], velocity [rad/s] and current [A] after `step` [s] on the straight line."""
     if p.armature_inductance.inductance != 0.0 and s.closed_bridge:
         return _inductive_piece(p, s, step, velocity, line)
-    inertia = p.total_inertia
-    slope, impulse, integral, twice, _ = _second(s, line.slope / inertia, line.stiffness / inertia, step)
-    push = (line.force + line.slope * velocity) / inertia
-    ramp = line.rate / inertia
+    agility = 1.0 / p.total_inertia
+    slope, impulse, integral, twice, _ = _second(s, line.slope * agility, line.stiffness * agility, step)
+    push = (line.force + line.slope * velocity) * agility
+    ramp = line.rate * agility
     travel = velocity * impulse + push * integral + ramp * twice
     return travel, velocity * slope + push * impulse + ramp * integral, s.current
 
@@ -187,7 +192,8 @@ def turn(p, s, velocity, line):
 def _turn(p, damping, stiffness, acceleration, jerk):
     """Time [s] to the next turn of a velocity that swings; infinite where it hardly does."""
     square = stiffness - 0.25 * damping * damping
-    if abs(acceleration) * math.sqrt(square) + abs(jerk) < STILL * p.own.angle / p.own.time * square:
+    least = max(STILL / p.own.time, UNMOVED * math.sqrt(square)) * p.own.angle * square
+    if abs(acceleration) * math.sqrt(square) + abs(jerk) < least:
         return math.inf
     return turning_time(damping, stiffness, acceleration, jerk)
 
@@ -200,12 +206,23 @@ def after(p, line, step, travel, change, amperes):
 
 
 @kernel
-def error(p, s, line, step, actual, expected):
-    """Angle [rad] by which a step may be wrong: from `actual` torque at its end and the one `expected` there [N.m]."""
+def correction(p, s, step, missed):
+    """Travel [rad] and velocity [rad/s] more, for a torque that has come up to `missed` [N.m] over the last `step` [s].
+
+    What a touching line misses grows with the square of time (the second stage of exprb32, Hochbruck, Ostermann, Acta
+    Numerica 19 (2010) 209-286).
+    """
+    curvature = 2.0 * missed / (p.total_inertia * step * step)
+    return curvature * s.piece.thrice, curvature * s.piece.twice
+
+
+@kernel
+def error(p, s, line, step, missed):
+    """Angle [rad] by which a step may be wrong that has `missed` this torque [N.m] at its end."""
     resisting = line.slope
     if p.armature_inductance.inductance != 0.0:
         resisting += line.gain * s.braking
     response = step / p.total_inertia
     if abs(resisting) * response > 1.0:
         response = 1.0 / abs(resisting)
-    return 0.5 * abs(actual - expected) * response * step
+    return 0.5 * abs(missed) * response * step

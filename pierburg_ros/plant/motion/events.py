@@ -11,20 +11,39 @@ import math
 
 from pierburg_ros.effects import external_load, presliding
 from pierburg_ros.kernel import kernel
-from pierburg_ros.plant.motion.body import JOINED, PARTED, after, balance, error, piece, share, torque_at, turn
+from pierburg_ros.plant.motion.body import (
+    JOINED,
+    PARTED,
+    after,
+    balance,
+    correction,
+    error,
+    piece,
+    share,
+    torque_at,
+    turn,
+)
 from pierburg_ros.plant.torques import friction
 from pierburg_ros.plant.torques.drive import relaxed_current
-from pierburg_ros.plant.torques.load import load, ripple
+from pierburg_ros.plant.torques.load import load, outside, ripple
 
 TOLERANCE = 2e-7
 """Error that an internal step may make, as a share of the actuator's travel, plus `SHARE` of its own; of the valve's
 Hall voltage it is 0.8 microvolt."""
 SHARE = 1e-4
 """See `TOLERANCE`."""
+CORRECTED = 10.0
+"""Error that a step may show before what its line missed is put right, as a multiple of `TOLERANCE` and `SHARE`.
+Measured: with it 18 models of the valve, 60 s at 500 Hz each, are off by 0.2 mV at most from runs with a ten-thousandth
+of the tolerance, as they were without putting right."""
+FASTER = 3.0
+"""Most by which a step may be longer than the one before."""
 SHORTEST = 1e-7
 """Internal steps are not shortened below this share of the actuator's own time; 10 ns for the valve."""
 SAME_MOMENT = 1e-11
 """Share of the actuator's own time within which a moment is found."""
+EVEN = 0.02
+"""Longest step of a shaft that stands, as a share of the period of a pulsating load."""
 GROWTH = 30.0
 """Largest exponent a step may grow by where friction falls with velocity."""
 
@@ -51,12 +70,16 @@ def upper(p):
 def onset(p, s, time, amperes):
     """Direction in which motor and shaft, standing as one, begin to move: +1, -1, or 0 where friction holds."""
     motor = torque_at(p, s, 0.0, amperes)
-    net = motor - load(p, s.angle, 0.0, time)[0] - ripple(p, s.motor_angle)[0]
-    if net > friction.hold(p, 1.0, 1.0, s.angle, motor, s.presliding.bristle) and s.angle < upper(p):
-        return 1.0
-    if net < -friction.hold(p, 1.0, -1.0, s.angle, motor, s.presliding.bristle) and s.angle > lower(p):
-        return -1.0
-    return 0.0
+    net = motor - load(p, s.angle, 0.0, outside(p, s, time))[0] - ripple(p, s.motor_angle)[0]
+    return off_stops(p, friction.breakaway(p, 1.0, net, s.angle, motor, s.presliding.bristle), s.angle)
+
+
+@kernel
+def off_stops(p, direction, angle):
+    """`direction`, or 0 where at this `angle` [rad] a rigid stop is in the way."""
+    if (direction > 0.0 and angle >= upper(p)) or (direction < 0.0 and angle <= lower(p)):
+        return 0.0
+    return direction
 
 
 @kernel
@@ -64,29 +87,33 @@ def motor_onset(p, s, tooth, amperes):
     """Direction in which the standing motor begins to move by itself, against `tooth` [N.m]; 0 where it is held."""
     motor = torque_at(p, s, 0.0, amperes)
     net = motor - tooth - ripple(p, s.motor_angle)[0]
-    part = share(p, PARTED)
-    if net > friction.hold(p, part, 1.0, s.motor_angle, motor, s.presliding.motor_bristle):
-        return 1.0
-    if net < -friction.hold(p, part, -1.0, s.motor_angle, motor, s.presliding.motor_bristle):
-        return -1.0
-    return 0.0
+    return friction.breakaway(p, share(p, PARTED), net, s.motor_angle, motor, s.presliding.motor_bristle)
+
+
+@kernel
+def loaded(p):
+    """Whether a load from outside changes with time."""
+    return p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0
+
+
+@kernel
+def even(p, s, remaining):
+    """How much of `remaining` [s] a load from outside is looked at in one go while the shaft stands."""
+    step = min(remaining, external_load.next_switch(p.external_load, s.time) - s.time)
+    if p.external_load.frequency > 0.0:
+        step = min(step, EVEN / p.external_load.frequency)
+    return min(max(step, shortest(p)), remaining)
 
 
 @kernel
 def hold(p, s, remaining):
     """Stand still for `remaining` [s] or until something sets the shaft moving; gives the time used."""
     inductive = p.armature_inductance.inductance != 0.0
-    loaded = p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0
-    if not inductive and not loaded:
+    if not inductive and not loaded(p):
         s.time += remaining
         s.steady = p.linear
         return remaining
-    step = remaining
-    if loaded:
-        step = min(step, external_load.next_switch(p.external_load, s.time) - s.time)
-        if p.external_load.frequency > 0.0:
-            step = min(step, 0.02 / p.external_load.frequency)
-    step = _standing_time(p, s, min(max(step, shortest(p)), remaining))
+    step = standing_time(p, s, JOINED, even(p, s, remaining) if loaded(p) else remaining)
     if inductive:
         s.current = relaxed_current(p, s, step)
     s.time += step
@@ -94,14 +121,14 @@ def hold(p, s, remaining):
 
 
 @kernel
-def _standing_time(p, s, step):
+def standing_time(p, s, kind, step):
     """How much of `step` [s] it stands: the current relaxes one way, so what does not move it at the end never did."""
-    if _onset_after(p, s, step) == 0.0:
+    if _onset_after(p, s, kind, step) == 0.0:
         return step
     early, late = 0.0, step
     for _ in range(40):
         middle = 0.5 * (early + late)
-        if _onset_after(p, s, middle) == 0.0:
+        if _onset_after(p, s, kind, middle) == 0.0:
             early = middle
         else:
             late = middle
@@ -109,19 +136,20 @@ def _standing_time(p, s, step):
 
 
 @kernel
-def _onset_after(p, s, step):
+def _onset_after(p, s, kind, step):
     amperes = relaxed_current(p, s, step) if p.armature_inductance.inductance != 0.0 else 0.0
+    if kind == PARTED:
+        return motor_onset(p, s, 0.0, amperes)
     return onset(p, s, s.time + step, amperes)
 
 
 @kernel
-def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
+def slide(p, s, kind, angle, velocity, direction, low, high, line, remaining):
     """Slide for `remaining` [s] or to the next event: time used, angle, velocity, whether at rest, whether at a limit.
 
-    The event is the velocity passing zero, or the angle reaching `low` or `high` [rad], where it stays.
+    The event is the velocity passing zero, or the angle reaching `low` or `high` [rad], where it stays. `line` is the
+    balance of torques now. What it is seen to miss at the end is added, and the step judged by what that leaves.
     """
-    bristle = s.presliding.bristle if kind == JOINED else s.presliding.motor_bristle
-    line = balance(p, s, kind, angle, velocity, direction, s.time, s.current, bristle)
     step = min(_first_step(p, s, line.slope, remaining), turn(p, s, velocity, line))
     while True:
         travel, ended, amperes = piece(p, s, step, velocity, line)
@@ -140,7 +168,12 @@ def slide(p, s, kind, angle, velocity, direction, low, high, remaining):
         if abs(travel) > p.finest and step > shortest(p):
             step = max(0.9 * step * p.finest / abs(travel), shortest(p))
             continue
-        excess = _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line) / allowed(p, travel)
+        missed = _missed(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line)
+        excess = beyond(p, error(p, s, line, step, missed), travel)
+        if s.piece.order == 2 and not rests and not stops:
+            more, faster = correction(p, s, step, missed)
+            if (ended + faster) * direction > 0.0 and (angle + travel + more - limit) * direction < 0.0:
+                travel, ended, excess = travel + more, ended + faster, excess / CORRECTED
         if not excess > 1.0 or step <= shortest(p):
             s.step = next_step(s.step, step, remaining, excess)
             break
@@ -175,7 +208,7 @@ def _first_step(p, s, slope, remaining):
         step = min(step, max(s.step, shortest(p)))
         if slope < 0.0:
             step = min(step, max(-GROWTH * p.total_inertia / slope, shortest(p)))
-        if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
+        if loaded(p):
             ahead = external_load.next_switch(p.external_load, s.time) - s.time
             step = min(step, max(ahead, shortest(p)))
             if p.external_load.frequency > 0.0:
@@ -190,9 +223,20 @@ def allowed(p, travel):
 
 
 @kernel
+def beyond(p, wrong, travel):
+    """Error of a step over the one that it may make; infinite where the step led beyond all numbers."""
+    excess = wrong / allowed(p, travel)
+    return math.inf if math.isnan(excess) else excess
+
+
+@kernel
 def next_step(before, step, remaining, excess):
     """Length [s] to try next after an accepted `step`, `excess` being its error over the allowed one."""
-    grown = step * min(3.0, 0.8 * max(excess, 1e-6) ** (-1.0 / 3.0))
+    if step == remaining and before >= FASTER * step:
+        return before
+    grown = FASTER * step
+    if not excess < (0.8 / FASTER) ** 3:
+        grown = 0.8 * step * excess ** (-1.0 / 3.0)
     return max(grown, before) if step == remaining else grown
 
 
@@ -203,15 +247,14 @@ def shorter(p, step, excess):
 
 
 @kernel
-def _wrong(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line):
-    """Angle [rad] by which the step may be wrong, from the torque that the straight line misses at its end."""
+def _missed(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line):
+    """Torque [N.m] that the straight line misses at the end of the step."""
     bristle = 0.0
     if p.presliding.stiffness != 0.0:
         bristle = s.presliding.bristle if kind == JOINED else s.presliding.motor_bristle
         bristle = _bristle(p, s, bristle, direction, angle, velocity, travel, ended, amperes)
     actual = balance(p, s, kind, angle + travel, ended, direction, s.time + step, amperes, bristle).force
-    expected = after(p, line, step, travel, ended - velocity, amperes - s.current)
-    return error(p, s, line, step, actual, expected)
+    return actual - after(p, line, step, travel, ended - velocity, amperes - s.current)
 
 
 @kernel

@@ -55,28 +55,27 @@ def _by_real_roots(damping, stiffness, step, half_gap):
     grown_slow, grown_fast = math.expm1(slow * step), math.expm1(fast * step)
     slope = (slow * (grown_slow + 1.0) - fast * (grown_fast + 1.0)) * scale
     impulse = (grown_slow - grown_fast) * scale
-    slow_1, fast_1 = _next_integral(slow, step, grown_slow, 1.0), _next_integral(fast, step, grown_fast, 1.0)
-    slow_2, fast_2 = _next_integral(slow, step, slow_1, 2.0), _next_integral(fast, step, fast_1, 2.0)
-    slow_3, fast_3 = _next_integral(slow, step, slow_2, 6.0), _next_integral(fast, step, fast_2, 6.0)
+    slow_1, slow_2, slow_3 = _integrals(slow, step, grown_slow)
+    fast_1, fast_2, fast_3 = _integrals(fast, step, grown_fast)
     return slope, impulse, (slow_1 - fast_1) * scale, (slow_2 - fast_2) * scale, (slow_3 - fast_3) * scale
 
 
 @kernel
-def _next_integral(root, step, integral, factorial):
-    """Next repeated integral of exp(root t) - 1: (previous - step^n / n!) / root, n! = `factorial`, n = 1, 2, 3.
+def _integrals(root, step, grown):
+    """The first three repeated integrals over t of exp(root t), after `step` [s]; `grown` is expm1(root step).
 
-    The first call is given expm1 itself, of which the integral over t of exp(root t) is expm1 / root.
+    Each is (previous - step^n / n!) / root, or its power series where that difference would lose digits.
     """
-    reach = root * step
-    if factorial == 1.0:
-        return integral / root if abs(reach) > 1e-12 else step * (1.0 + 0.5 * reach)
-    if factorial == 2.0:
-        if abs(reach) < 1e-3:
-            return step * step * (0.5 + reach * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach / 120.0)))
-        return (integral - step) / root
-    if abs(reach) < 1e-2:
-        return step * step * step * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach * (1.0 / 120.0 + reach / 720.0)))
-    return (integral - 0.5 * step * step) / root
+    reach, period = root * step, 1.0 / root
+    first = grown * period if abs(reach) > 1e-12 else step * (1.0 + 0.5 * reach)
+    if abs(reach) >= 1e-2:
+        second = (first - step) * period
+        return first, second, (second - 0.5 * step * step) * period
+    square = step * step
+    third = square * step * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach * (1.0 / 120.0 + reach / 720.0)))
+    if abs(reach) >= 1e-3:
+        return first, (first - step) * period, third
+    return first, square * (0.5 + reach * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach / 120.0))), third
 
 
 @kernel

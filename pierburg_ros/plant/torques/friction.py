@@ -50,11 +50,17 @@ def level(p, direction, velocity, angle, motor_torque):
 
 
 @kernel
-def hold(p, share, direction, angle, motor_torque, bristle):
-    """Torque [N.m] that sets the standing contact moving in `direction`, of which it carries this `share`.
+def breakaway(p, share, net, angle, motor_torque, bristle):
+    """Direction in which `net` torque [N.m] sets the standing contact moving, of which it carries this `share`; or 0.
 
     Bristles hold by leaning, so what they bear is part of the balance, and any push beyond it moves them.
     """
     if p.presliding.stiffness != 0.0:
-        return NOTHING * p.own.torque + direction * share * p.presliding.stiffness * bristle
-    return share * level(p, direction, 0.0, angle, motor_torque)[0]
+        push = net - share * p.presliding.stiffness * bristle
+        held = NOTHING * p.own.torque
+    else:
+        push = net
+        held = share * level(p, 1.0 if push > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
+    if push > held:
+        return 1.0
+    return -1.0 if push < -held else 0.0

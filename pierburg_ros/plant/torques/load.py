@@ -20,8 +20,22 @@ def ripple(p, motor_angle):
 
 
 @kernel
-def load(p, angle, velocity, time):
+def outside(p, s, time):
+    """Torque [N.m] of a load from outside at `time` [s] and its rate [N.m/s]; the state keeps those of one moment."""
+    if p.external_load.torque == 0.0 and p.external_load.amplitude == 0.0:
+        return 0.0, 0.0
+    kept = s.outside
+    if kept.time != time or kept.serial != p.serial:
+        kept.time, kept.serial = time, p.serial
+        kept.torque, kept.rate = external_load.torque(p.external_load, time), external_load.rate(p.external_load, time)
+    return kept.torque, kept.rate
+
+
+@kernel
+def load(p, angle, velocity, pushed):
     """Load torque of the shaft [N.m], positive closes, and its derivatives with angle, velocity and time.
+
+    `pushed` is what comes from outside, torque [N.m] and rate [N.m/s].
 
     Equation (4) of the paper, T_s = k_s angle + preload, and whatever effects add.
     """
@@ -30,19 +44,16 @@ def load(p, angle, velocity, time):
     if p.plain:
         return torque, by_angle, 0.0, 0.0
     by_velocity = 0.0
-    by_time = 0.0
     if p.gravity_torque != 0.0:
         torque += p.gravity_torque * math.sin(angle)
         by_angle += p.gravity_torque * math.cos(angle)
     if p.nonlinear_spring.cubic_stiffness != 0.0 or p.nonlinear_spring.knee_stiffness != 0.0:
         torque += nonlinear_spring.torque(p.nonlinear_spring, angle)
         by_angle += nonlinear_spring.slope(p.nonlinear_spring, angle)
-    if p.external_load.torque != 0.0 or p.external_load.amplitude != 0.0:
-        torque += external_load.torque(p.external_load, time)
-        by_time += external_load.rate(p.external_load, time)
+    torque += pushed[0]
     if p.stop_compliance.stiffness != 0.0:
-        pushed, stiffness, damping = contact(p, angle, velocity)
-        torque += pushed
+        stopped, stiffness, damping = contact(p, angle, velocity)
+        torque += stopped
         by_angle += stiffness
         by_velocity += damping
     if p.residual.angles > 0:
@@ -50,7 +61,7 @@ def load(p, angle, velocity, time):
         torque += shape
         by_angle += slope_angle
         by_velocity += slope_velocity
-    return torque, by_angle, by_velocity, by_time
+    return torque, by_angle, by_velocity, pushed[1]
 
 
 @kernel

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.executors import Lost, ended
 from pierburg_ros.proof.real.conduct import Bench, conduct, diagnose_others, take_up
 from pierburg_ros.proof.real.machine import Machine
@@ -63,7 +63,9 @@ def planned(machine: Machine, only: Sequence[str] = (), levels: Sequence[str] = 
     for what, asked, known in (("kind", only, kinds), ("level", levels, LEVELS)):
         for each in asked:
             if each not in known:
-                raise InputError(f"found {what} {each!r}, expected one of {', '.join(known)} for {actuator.name}.")
+                raise InputError(
+                    f"found {what} {each!r}, expected one of {', '.join(known)} for {actuator.name}.{near(each, known)}"
+                )
     return Plan(machine, tuple(only) or kinds, tuple(each for each in LEVELS if not levels or each in levels), most)
 
 

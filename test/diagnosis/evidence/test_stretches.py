@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.evidence.stretches import forgotten, restarted
+from pierburg_ros.diagnosis.evidence.stretches import forgotten, leading_to, restarted
 
 
 def test_cover_every_sample_once_and_keep_what_trains():
@@ -56,3 +56,17 @@ def test_stretches_begin_where_the_model_that_is_simulated_reads_them():
 )
 def test_only_heat_outlasts_a_stretch(effects, expected):
     assert forgotten(effects) == expected
+
+
+def test_stretches_lead_to_every_sample_that_tests_but_the_first():
+    data = data_on(recording({}, duration=24.0))
+    run = data.runs[0]
+    led = leading_to(data, 1.0, 0.2)
+    counted = np.concatenate([part.time[~(part.train | part.validation)] for part in led.runs])
+    test = run.time[data.test]
+    np.testing.assert_array_equal(counted, test[test - run.time[0] >= 0.8])
+    for part in led.runs:
+        late = part.time[~(part.train | part.validation)] - part.time[0]
+        assert np.all((late > 0.8 - 0.003) & (late < 1.0 + 0.003))
+    error = led.residual(NOMINAL)[led.test] * data.noise
+    assert np.sqrt(np.mean(error**2)) < 1.5 * NOISE

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.diagnosis.remainder.around import supported_around
+from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.estimation.data import Data, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -24,24 +24,30 @@ RIPPLE = {
 }
 
 
-def data_on(model: Model) -> Data:
+def recorded(model: Model, seed: int = 4) -> Recording:
     """A rotor that goes round slowly under a current that wanders."""
-    random = np.random.default_rng(4)
+    random = np.random.default_rng(seed)
     current = 1.2 + 0.2 * np.interp(TIME, np.linspace(0.0, 6.0, 60), random.standard_normal(60))
     angle = simulate(model, Inputs(TIME, current), TIME, 0.3, 2.0) + 1e-4 * random.standard_normal(TIME.size)
-    recording = Recording("turns", "position", TIME, angle, Channel(TIME, current), input="current")
-    return in_parts(data_of([recording], NOMINAL))
+    return Recording(f"turns {seed}", "position", TIME, angle, Channel(TIME, current), input="current")
+
+
+def data_on(model: Model, *seeds: int) -> Data:
+    return in_parts(data_of([recorded(model, seed) for seed in seeds or (4,)], NOMINAL))
 
 
 def recalibrated(data: Data) -> Fit:
     return Estimator(data, NOMINAL).fit(Explanation(drifting(NOMINAL)))
 
 
-def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
+def rippled() -> Model:
     overtone = {"angle": ANGLE, "velocity": np.zeros(1), "period": 2.0 * np.pi}
     overtone["torque"] = 0.003 * np.cos(28.0 * ANGLE)[:, None]
-    true = NOMINAL.with_values({**RIPPLE, "coulomb_friction": 0.012}).with_residual(overtone)
-    data = data_on(true)
+    return NOMINAL.with_values({**RIPPLE, "coulomb_friction": 0.012}).with_residual(overtone)
+
+
+def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
+    data = data_on(rippled())
     found = supported_around(data, NOMINAL, recalibrated(data))
     assert found is not None
     values = found.scored.fit.values
@@ -54,3 +60,13 @@ def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
 def test_a_rotor_without_a_ripple_is_given_none() -> None:
     data = data_on(NOMINAL.with_values({"coulomb_friction": 0.012}))
     assert supported_around(data, NOMINAL, recalibrated(data)) is None
+
+
+def test_several_recordings_vouch_for_a_ripple_that_they_share() -> None:
+    data = data_on(rippled(), 4, 5)
+    found, said = supported_around(data, NOMINAL, recalibrated(data)), vouched_around(data, NOMINAL)
+    assert found is not None and said is not None
+    assert found.scored.fit.values["cogging_torque.amplitude"] == pytest.approx(0.006, rel=0.1)
+    assert (said.helped, said.parts, said.recordings) == (2, 2, ("turns 4", "turns 5"))
+    assert said.beside < 0.5 * said.without
+    assert vouched_around(data_on(NOMINAL.with_values({"coulomb_friction": 0.012}), 4, 5), NOMINAL) is None

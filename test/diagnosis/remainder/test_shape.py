@@ -61,7 +61,7 @@ def test_is_fitted_to_training_samples_only(hidden):
     grid = nodes(data)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "nodes", lambda _: grid)
-        patch.setattr(module, "restarted", restarted_like(data))
+        patch.setattr(module, "in_stretches", restarted_like(data))
         again = fitted(replace(data, runs=(spoilt,)), [as_described])
     np.testing.assert_allclose(again.model.residual_torque["torque"], shape.model.residual_torque["torque"])
 

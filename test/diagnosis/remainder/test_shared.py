@@ -5,9 +5,12 @@ from support.fits import found_among
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.deadline import Deadline, OutOfTime
-from pierburg_ros.diagnosis.remainder.shared import Shared, shared_effects
+from pierburg_ros.diagnosis.remainder.left_out import LeftOut, folds_of
+from pierburg_ros.diagnosis.remainder.shared import Bench, Round, Shared, shared_effects, thinned
+from pierburg_ros.estimation.data import all_training
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.workers import workers
 
 TRUTH = {"viscous_friction.coefficient": 0.03, "sensor_lag.time_constant": 0.01}
 pytestmark = pytest.mark.search
@@ -57,6 +60,19 @@ def test_after_an_interrupt_stands_what_had_been_added_by_then() -> None:
     fit, left_out = shared_effects(found, interrupted_at_the_second)
     assert fit.explanation.effects == tuple(left_out)
     assert len(left_out) == 1
+
+
+def test_what_only_stood_in_is_taken_out_again() -> None:
+    """A dead band that came first has nothing left to do beside the lag that acts."""
+    data = all_training(data_on(*(recording(TRUTH, duration=6.0, seed=seed) for seed in range(3))))
+    ways = (("pwm_deadband", "width"), ("viscous_friction", "coefficient"), ("sensor_lag", "time_constant"))
+    whole = Explanation(variants=tuple(Variant(effect, (parameter,)) for effect, parameter in ways))
+    with workers(1) as pool:
+        bench = Bench(data, folds_of(data), NOMINAL, pool)
+        fit = bench.settled(whole, {**TRUTH, "pwm_deadband.width": 0.01})
+        said = {effect: LeftOut(2.0, 1.0, 3, 3) for effect, _ in ways}
+        left = thinned(bench, Round(fit, bench.parts(fit), said), candidates=20)
+    assert left.fit.explanation.effects == ("viscous_friction", "sensor_lag") == tuple(left.said)
 
 
 def test_no_time_at_all_is_said() -> None:

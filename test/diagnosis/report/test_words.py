@@ -3,7 +3,7 @@
 import pytest
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
-from pierburg_ros.diagnosis.remainder.shared import LeftOut
+from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
 from pierburg_ros.diagnosis.schema import BaseParameter, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.supported import Weight

@@ -8,9 +8,9 @@ import pytest
 from support.fits import found_among, made_up, of_chi2
 from support.recordings import NOMINAL, data_on, recording, recording_under
 
+from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.remainder.shape import Shape
-from pierburg_ros.diagnosis.remainder.shared import LeftOut
 from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion, conclude, verdict_on
 from pierburg_ros.estimation.data import Data, data_of

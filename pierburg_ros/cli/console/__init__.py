@@ -1,0 +1,1 @@
+"""What a command shows on the terminal: text as it stands, how far it is, and how it ends."""

@@ -1,0 +1,69 @@
+"""The torque that repeats itself with every turn of a shaft that goes round: a map over one turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.torque_balance import TURN, Balance, goes_round, over_a_turn
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
+
+MENTIONED = 4
+"""How many orders are told in words. Chosen: a sentence holds no more; the map holds all."""
+LEAST = 0.01
+"""Share of the strongest order from which another is told. Chosen: less is not seen beside it."""
+
+
+def has_overtones(data: Data, nominal: Model) -> bool:
+    """Whether more than one order of a torque over a turn is seen: more than one effect could be named for."""
+    found = repeated(data, nominal)
+    return found is not None and found.orders.size > 1
+
+
+def with_lesser_orders(data: Data, nominal: Model) -> Model:
+    """`nominal` with all orders of the torque over a turn but the strongest, for which an effect may then be named.
+
+    A ripple has overtones. A sine alone leaves so much of them that little is seen beside it.
+    """
+    found = repeated(data, nominal)
+    return nominal if found is None else _with(nominal, found.lesser)
+
+
+def with_turn(data: Data, base: Model) -> Model | None:
+    """`base` with what its effects leave of the torque over a turn; None where no shaft goes round."""
+    found = repeated(data, base)
+    return None if found is None else _with(base, found)
+
+
+def described_turn(torque: Signal, unit: str) -> str:
+    """The strongest orders of a `torque` over a turn, shape (angles, 1), in words."""
+    amplitude = 2.0 * np.abs(np.fft.rfft(torque[:-1, 0])) / (torque.shape[0] - 1)
+    least = LEAST * float(np.max(amplitude))
+    strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > least]
+    orders = ", ".join(f"{amplitude[order]:#.2g} {unit} {order} times" for order in strongest)
+    return f"it repeats itself with every turn, with {orders}"
+
+
+def repeated(data: Data, model: Model) -> Balance | None:
+    """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
+
+    All runs that go round tell it together: the angle is counted from the same place in all recordings of an actuator.
+    """
+    turning = [
+        (run.inputs, run.time, run.measured, run.train)
+        for run in data.runs
+        if goes_round(model, run.measured, run.quantity)
+    ]
+    if not turning:
+        return None
+    found = over_a_turn(model.with_residual(None), turning)
+    return found if found.orders.size else None
+
+
+def _with(model: Model, found: Balance) -> Model:
+    """`model` with a torque over a turn; the first node is the last one again."""
+    angle = np.linspace(0.0, TURN, RESIDUAL_ANGLES)
+    torque = found.torque(angle)[:, np.newaxis]
+    return model.with_residual({"angle": angle, "velocity": np.zeros(1), "torque": torque, "period": TURN})

@@ -1,0 +1,1 @@
+"""What changes over the life of each unit: courses, trends, steps, forecasts, and who is unlike the rest."""

@@ -1,0 +1,170 @@
+"""Live parameters: declared from the core, checked in one place, set by service, topic or parameter file."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from threading import Event
+from typing import Any
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.subscription import Subscription
+
+from pierburg_ros.errors import InputError, near
+from pierburg_ros.nodes.core.parameter_files import unread_files
+from pierburg_ros.nodes.graph.diagnostics import Diagnostics
+from pierburg_ros.nodes.graph.qos import COMMANDS, overridable
+from pierburg_ros.parameter import Parameter as Declaration
+from pierburg_ros.parameter import Value
+
+_OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides")
+
+
+class LiveNode(Node):
+    """A node whose parameters are declared with unit and range, and which refuses with a reason.
+
+    `values` holds what is in force. A subclass declares in its constructor, then calls `open_parameters`.
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name, automatically_declare_parameters_from_overrides=True)
+        self.stopping = Event()
+        self.values: dict[str, Any] = {}
+        self._declared: dict[str, Declaration] = {}
+        self.diagnostics = Diagnostics(self, self.counters)
+        self._given = self._overrides()
+
+    def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
+        """A publisher whose quality of service `qos_overrides` may change, if it is one of the project's topics."""
+        return super().create_publisher(kind, topic, profile, **overridable(profile, options))
+
+    def create_subscription(
+        self, kind: type, topic: str, callback: Callable[..., None], profile: Any, **options: Any
+    ) -> Subscription:
+        """A subscription whose quality of service `qos_overrides` may change, as for publishers."""
+        return super().create_subscription(kind, topic, callback, profile, **overridable(profile, options))
+
+    def accept(self, changes: Mapping[str, Any]) -> None:
+        """Put `changes`, each checked on its own, in force together; InputError refuses them all."""
+
+    def begin(self) -> None:
+        """Called once when the node is about to be served."""
+
+    def close(self) -> None:
+        """Called once when the node is no longer served, while it is still on the graph."""
+
+    def counters(self) -> Mapping[str, object]:
+        """Numbers for `/diagnostics`."""
+        return {}
+
+    def declare(self, declarations: Iterable[Declaration]) -> None:
+        """Declare parameters with the values given at the start where those are acceptable."""
+        declared = {each.name: each for each in declarations}
+        self._declared.update(declared)
+        values = {name: each.default for name, each in declared.items()}
+        for name in sorted(set(values) & set(self._given)):
+            try:
+                values[name] = declared[name].accepted(self._given.pop(name))
+            except InputError as error:
+                self.diagnostics.refuse(str(error))
+        try:
+            self.accept(values)
+        except InputError as error:
+            self.diagnostics.refuse(f"{error} All values given at the start are left aside.")
+            values = {name: each.default for name, each in declared.items()}
+            self.accept(values)
+        for name, value in values.items():
+            self.declare_parameter(name, value, descriptor(declared[name]), ignore_override=True)
+        self.values.update(values)
+
+    def open_parameters(self) -> None:
+        """From here on parameters can be set; names given at the start that do not exist are reported."""
+        for name in self._given:
+            self.diagnostics.refuse(self._unknown(name))
+        self.add_on_set_parameters_callback(self._on_set)
+        self.create_subscription(ParameterMessage, "~/set_parameter", self._on_message, COMMANDS)
+        for reason in (*unread_files(self.get_fully_qualified_name(), sys.argv), *self._unused_overrides()):
+            self.diagnostics.refuse(reason)
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set all of them or none: the one way in for services, the topic and code."""
+        try:
+            checked = [self._checked(parameter) for parameter in parameter_list]
+        except InputError as error:
+            return self._refused(str(error))
+        result = super().set_parameters_atomically(checked)
+        return result if result.successful else self._refused(result.reason)
+
+    def _on_message(self, message: ParameterMessage) -> None:
+        self.set_parameters_atomically([Parameter.from_parameter_msg(message)])
+
+    def _on_set(self, parameters: list[Parameter]) -> SetParametersResult:
+        changes = {p.name: p.value for p in parameters if p.name in self._declared}
+        try:
+            self.accept(changes)
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        self.values.update(changes)
+        return SetParametersResult(successful=True)
+
+    def _checked(self, parameter: Parameter) -> Parameter:
+        if parameter.name in self._declared:
+            value = self._declared[parameter.name].accepted(parameter.value)
+            return Parameter(parameter.name, value=value)
+        if not self.has_parameter(parameter.name):
+            raise InputError(self._unknown(parameter.name))
+        return parameter
+
+    def _refused(self, reason: str) -> SetParametersResult:
+        self.diagnostics.refuse(reason)
+        return SetParametersResult(successful=False, reason=reason)
+
+    def _unknown(self, name: str) -> str:
+        meant = near(name, self._declared)
+        return f"{self.get_name()} has no parameter {name!r}; 'ros2 param list' shows those it has.{meant}"
+
+    def _unused_overrides(self) -> list[str]:
+        """Complaints about qualities of service that were given for topics which this node does not have."""
+        topics = {each.topic_name for each in (*self.publishers, *self.subscriptions)}
+        given = {name.split(".")[0] for name in self.get_parameters_by_prefix("qos_overrides")}
+        return [
+            f"{self.get_name()} has no topic {topic} for qos_overrides; write its full name, as in"
+            f" {self.resolve_topic_name('name')}."
+            for topic in sorted(given - topics)
+        ]
+
+    def _overrides(self) -> dict[str, Value]:
+        """Values given at the start, taken out so that they can be checked first."""
+        given = {name: p.value for name, p in self.get_parameters_by_prefix("").items()}
+        given = {name: value for name, value in given.items() if name.split(".")[0] not in _OF_ROS}
+        for name in given:
+            self.undeclare_parameter(name)
+        return given
+
+
+def descriptor(declaration: Declaration) -> ParameterDescriptor:
+    """Description, unit and range as tools show them."""
+    message = ParameterDescriptor(
+        name=declaration.name,
+        description=declaration.description,
+        additional_constraints=" or ".join(declaration.choices),
+        read_only=declaration.fixed,
+    )
+    bounded = math.isfinite(declaration.minimum) and math.isfinite(declaration.maximum)
+    if bounded and isinstance(declaration.default, float):
+        message.floating_point_range = [
+            FloatingPointRange(from_value=declaration.minimum, to_value=declaration.maximum)
+        ]
+    elif bounded and isinstance(declaration.default, int):
+        message.integer_range = [IntegerRange(from_value=int(declaration.minimum), to_value=int(declaration.maximum))]
+    return message

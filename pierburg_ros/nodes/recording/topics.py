@@ -1,0 +1,141 @@
+"""Subscriptions of the recorder: raw, of any installed type, with the quality of service on offer."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from threading import Lock
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.nodes.core.numbering import Numbering
+from pierburg_ros.nodes.core.recorder_parameters import DEFAULT_TOPICS
+from pierburg_ros.nodes.graph.qos import RECORDED, described
+from pierburg_ros.nodes.recording.definitions import message_class, type_hash
+from pierburg_ros.nodes.recording.file import Topic
+
+
+@dataclass(frozen=True)
+class Received:
+    """A message as it came: its number among its publisher's, and when it was sent, received and taken [ns]."""
+
+    topic: Topic
+    data: bytes
+    sequence: int
+    sent: int
+    arrived: int
+    taken: int
+
+
+class ServedElsewhere(CallbackGroup):
+    """Keeps subscriptions out of the executor's hands, for a thread that takes from them itself."""
+
+    def can_execute(self, entity: object) -> bool:
+        """Never."""
+        return False
+
+    def beginning_execution(self, entity: object) -> bool:
+        """Never."""
+        return False
+
+    def ending_execution(self, entity: object) -> None:
+        """Nothing was begun."""
+
+
+class RecordedTopics:
+    """Keeps every wanted topic subscribed and gives what has come, counting gaps in the numbering.
+
+    `take` may be called from one thread while another one looks at the graph.
+    """
+
+    def __init__(self, node: Node, names: Iterable[str]) -> None:
+        self.numbering: dict[str, Numbering] = {}
+        self._node = node
+        self._kinds = {node.resolve_topic_name(name): DEFAULT_TOPICS.get(name) for name in names}
+        self._group = ServedElsewhere()
+        self._lock = Lock()
+        self._subscriptions: dict[str, Subscription] = {}
+        self._topics: dict[str, Topic] = {}
+        self._publishers: dict[str, int] = {}
+        for name, kind in self._kinds.items():
+            if kind is not None:
+                self._subscribe(name, kind, RECORDED)
+
+    def look(self) -> None:
+        """Subscribe what has appeared, and weaken subscriptions that their publishers cannot serve."""
+        present = dict(self._node.get_topic_names_and_types())
+        for name, known in list(self._kinds.items()):
+            kinds = [known] if known else present.get(name, [])
+            offers = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
+            self._publishers[name] = len(offers)
+            if kinds and offers:
+                self._subscribe(name, kinds[0], profile_for(offers, keeps_history=known is None))
+
+    def take(self) -> list[Received]:
+        """All that has arrived, topic by topic."""
+        found: list[Received] = []
+        with self._lock:
+            for name, subscription in self._subscriptions.items():
+                with subscription.handle:
+                    while taken := subscription.handle.take_message(subscription.msg_type, True):
+                        found.append(self._received(name, *taken))
+        return found
+
+    def losses(self) -> dict[str, tuple[int, int]]:
+        """Lost and received messages of every topic that has had any."""
+        return {name: (each.lost, each.received) for name, each in self.numbering.items() if each.received}
+
+    def count_anew(self) -> None:
+        """Begin the counts of a new file."""
+        with self._lock:
+            for each in self.numbering.values():
+                each.forget_counts()
+
+    def _subscribe(self, name: str, kind: str, profile: QoSProfile) -> None:
+        current = self._subscriptions.get(name)
+        if current is not None and current.qos_profile == profile:
+            return
+        try:
+            message = message_class(kind)
+            type_hash(kind)
+        except InputError as error:
+            self._node.diagnostics.refuse(f"{name} is not recorded: {error}")
+            del self._kinds[name]
+            return
+        made = self._node.create_subscription(
+            message, name, lambda _: None, profile, raw=True, callback_group=self._group
+        )
+        with self._lock:
+            self._subscriptions[name] = made
+            self._topics.setdefault(name, Topic(name, kind))
+            self.numbering.setdefault(name, Numbering())
+        if current is not None:
+            self._node.destroy_subscription(current)
+
+    def _received(self, name: str, data: bytes, info: dict[str, int]) -> Received:
+        if not self.numbering[name].received and not self._topics[name].qos:
+            self._topics[name] = self._described(name)
+        sequence = info["publication_sequence_number"]
+        self.numbering[name].take(sequence, self._publishers.get(name, 1))
+        sent, arrived = info["source_timestamp"], info["received_timestamp"]
+        return Received(self._topics[name], data, sequence, sent, arrived, time.time_ns())
+
+    def _described(self, name: str) -> Topic:
+        offers = self._node.get_publishers_info_by_topic(name)
+        return Topic(name, self._topics[name].kind, tuple(described(info.qos_profile) for info in offers))
+
+
+def profile_for(offers: list[QoSProfile], keeps_history: bool) -> QoSProfile:
+    """What the publishers can serve: delivery if one promises it, the past if all keep it."""
+    reliable = any(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers)
+    latched = keeps_history and all(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
+    return QoSProfile(
+        depth=RECORDED.depth,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+    )

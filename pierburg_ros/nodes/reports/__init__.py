@@ -1,0 +1,1 @@
+"""What the controller and the plant say of themselves on `/diagnostics`."""
