@@ -97,19 +97,20 @@ class Search:
     def _grow(self, best: Fit) -> None:
         """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
         size = best.explanation.size
-        if size > 0 and not adequate(best) and self._remains():
-            return
         seeds = self._seeds(best)
         if len(seeds) > 1:
             self._fit_most_promising(seeds)
             if self._complete(size + 1):
                 return
-            self.refine(self.of_size(size))
+            if not self.resigned:
+                self.refine(self.of_size(size))
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
             seeds = self._seeds(best)
             self._fit_ripples(seeds)
+            if not self._complete(size + 1) and self._remains():
+                return
         for seed in seeds:
             if self._complete(size + 1) or self.exhausted:
                 return
