@@ -1,6 +1,7 @@
 """A long run at 500 Hz: messages lost by sequence, memory at start, middle and end, ticks skipped.
 
-python benchmarks/hour.py --duration 3600 writes its section of docs/reliability.md; --no-write only prints.
+python benchmarks/hour.py --duration 3600 --case idle writes its section of docs/reliability.md, one for each case;
+--no-write only prints.
 """
 
 from __future__ import annotations
@@ -54,6 +55,7 @@ def main() -> None:
     """Measure, and write the section."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=3600.0, help="length of the run [s]")
+    parser.add_argument("--case", default="idle", help="what the machine does meanwhile: name of the section")
     parser.add_argument("--busy", type=int, default=0, help="busy processes beside")
     parser.add_argument("--note", default="", help="what else ran on the machine")
     parser.add_argument("--write", action=argparse.BooleanOptionalAction, default=True)
@@ -63,14 +65,14 @@ def main() -> None:
     found = run(options.duration, options.busy)
     rows = "\n".join(f"| {name} | {value} |" for name, value in found.items())
     text = (
-        "## A long run\n\n"
+        f"## A long run, {options.case} machine\n\n"
         f"Plant, controller and recorder as three processes at 500 Hz for {options.duration:.0f} s in wall time,"
         f" {options.busy} busy processes beside, one run. {machine()}. Load average before: {others:.1f}."
-        f" {options.note}\n\n| | |\n|---|---|\n{rows}\n\nMade by `python benchmarks/hour.py`."
+        f" {options.note}\n\n| | |\n|---|---|\n{rows}\n\nMade by `python benchmarks/hour.py --case {options.case}`."
     )
     print(text)
     if options.write:
-        write_section("hour", text, "reliability.md")
+        write_section(f"hour {options.case}", text, "reliability.md")
 
 
 if __name__ == "__main__":

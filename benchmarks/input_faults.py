@@ -319,7 +319,12 @@ count where they name what mends them.
 CLEAN = """
 What is not found is mostly tied. Without stops, turns for radians are a drift by 6.3. Late stamps hide in a real delay,
 and an inertial servo smooths them away. A duty that changes every second is logged often enough at 50 Hz. A sensor that
-is off without ever reading beyond a stop equals drifts.
+is off without ever reading beyond a stop equals drifts. A servo that is told 20 or 50 ms late is hidden by what its
+description lacks: moved in time by 10 to 60 ms, the input of clean runs agrees better in five of eight.
+
+Two actuators as one are told by what one set of numbers loses beside their own. On recordings that had no part in the
+choice of that limit, 20 of 24 pairs of different valves are found (16 with the limit before), and none of 21 pairs of
+one valve with an effect is blamed. A winding that is hotter by 75 K is taken for another valve, one by 50 K is not.
 
 ## Nothing wrong with the signals
 

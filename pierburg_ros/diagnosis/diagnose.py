@@ -85,7 +85,7 @@ def examined(
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
     rest, single = untouched(data, nominal, recordings), len(recordings) == 1
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-    turning = has_overtones(rest or data, nominal)
+    turning = has_overtones(data, nominal)
     if rest and not turning:
         # physics comes first
         found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)

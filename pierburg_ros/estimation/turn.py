@@ -6,7 +6,8 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.torque_balance import TURN, Balance, goes_round, over_a_turn
+from pierburg_ros.estimation.run import Run
+from pierburg_ros.estimation.torque_balance import TURN, Balance, Part, goes_round, over_a_turn
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
@@ -50,16 +51,24 @@ def repeated(data: Data, model: Model) -> Balance | None:
     """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
 
     All runs that go round tell it together: the angle is counted from the same place in all recordings of an actuator.
+    The longest run of each recording has to show an order by itself: what pieces of a swing leave, put together, passes
+    for one.
     """
-    turning = [
-        (run.inputs, run.time, run.measured, run.train)
-        for run in data.runs
-        if goes_round(model, run.measured, run.quantity)
-    ]
+    bare = model.with_residual(None)
+    told = [run for run in data.runs if run.train.any()]
+    turning = [run for run in told if goes_round(model, run.measured, run.quantity)]
+    for number in {run.number for run in told}:
+        longest = max((run for run in told if run.number == number), key=lambda run: run.time.size)
+        if all(longest is not run for run in turning) or not over_a_turn(bare, [_part(longest)]).orders.size:
+            return None
     if not turning:
         return None
-    found = over_a_turn(model.with_residual(None), turning)
+    found = over_a_turn(bare, [_part(run) for run in turning])
     return found if found.orders.size else None
+
+
+def _part(run: Run) -> Part:
+    return run.inputs, run.time, run.measured, run.train
 
 
 def _with(model: Model, found: Balance) -> Model:

@@ -1,5 +1,7 @@
 "use strict";
-// Sorts and filters the table of units, and opens a unit: its courses as plots, its recordings as links.
+// Sorts and filters the table of units, and opens a unit: its courses as plots, its recordings as links. What only an
+// open unit needs waits until the table is shown: the plotting library, and of the details, a line a unit in the order
+// of their rank, the line of this unit.
 (() => {
   const table = document.getElementById("fleet"), body = table.tBodies[0], rows = [...body.rows];
   const root = document.documentElement, colour = (name) => getComputedStyle(root).getPropertyValue(`--${name}`).trim();
@@ -58,9 +60,15 @@
     return Plotly.newPlot(div, data, { width: div.clientWidth, height: 260, showlegend: false, shapes, margin: { t: 10, r: 10, b: 40, l: 66 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { family: "system-ui, sans-serif", color: colour("ink"), size: 12 }, xaxis: { ...axis, type: "date" }, yaxis: { ...axis, title: { text: `${course.name} [${course.unit}]` }, automargin: true } }, { displayModeBar: false });
   }
 
+  function prepare() {
+    if (details !== null) return;
+    details = document.getElementById("details").textContent.split("\n");
+    document.body.append(element("script", document.getElementById("library").textContent));
+  }
+
   function open(row, button) {
-    if (details === null) details = JSON.parse(document.getElementById("details").textContent);
-    const own = details[button.dataset.unit], line = element("tr", undefined, { "data-detail": "" });
+    prepare();
+    const own = JSON.parse(details[row.cells[0].textContent - 1]), line = element("tr", undefined, { "data-detail": "" });
     const cell = element("td", undefined, { colspan: "8" }), grid = element("div", undefined, { class: "grid" });
     line.append(cell);
     row.after(line);
@@ -98,6 +106,7 @@
       if (button.getAttribute("aria-expanded") === "true") close(row); else open(row, button);
     }
   });
+  window.addEventListener("load", () => (window.requestIdleCallback || setTimeout)(prepare));
   filter.addEventListener("input", narrow);
   kind.addEventListener("change", narrow);
 })();

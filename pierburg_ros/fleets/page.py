@@ -36,7 +36,7 @@ def fleet_page(
     for known_of_one in known:
         courses[known_of_one.course.unit_name].append(known_of_one)
     rows = [unit_row(rank, each, by_unit[each.unit]) for rank, each in enumerate(attention, start=1)]
-    details = {unit: detail(by_unit[unit], courses[unit]) for unit in by_unit}
+    details = "\n".join(inert(detail(by_unit[each.unit], courses[each.unit])) for each in attention)
     context = {
         "title": f"{len(by_unit)} units of {actuator.name}",
         "sentence": sentence,
@@ -45,10 +45,12 @@ def fleet_page(
         "unusable": sum(each.problem is not None for each in recordings),
         "undated": sum(each.problem is None and moment(each) is None for each in recordings),
         "kinds": KINDS,
-        "details": inert(details),
+        "details": details,
         "script": (resources.files("pierburg_ros.fleets") / "fleet.js").read_text(encoding="utf-8"),
     }
-    return written("pierburg_ros.fleets", "fleet.html", {}, context, provenance=provenance(actuator, {}))
+    return written(
+        "pierburg_ros.fleets", "fleet.html", {}, context, provenance=provenance(actuator, {}), library_later=True
+    )
 
 
 def unit_row(rank: int, each: Attention, own: Sequence[Examined]) -> dict[str, Any]:

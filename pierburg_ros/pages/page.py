@@ -53,7 +53,8 @@ def written(
     """The page of a `template` in `package`, filled with `context`; its plots take their curves from `signals`.
 
     `frame` is what the frame shows below: `model_file`, `model_said`, `commands`, `provenance`; and `library_at`, where
-    the plotting library lies if many pages share it. Text is never markup.
+    the plotting library lies if many pages share it, or `library_later`, whether the page's own script starts the one
+    inside. Text is never markup.
     """
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(lambda name: _source(package, name) or _source(FRAME, name)),
@@ -69,6 +70,7 @@ def written(
         "commands": (),
         "provenance": (),
         "library_at": "",
+        "library_later": False,
         **frame,
     }
     return environment.get_template(template).render(

@@ -70,6 +70,8 @@ def test_a_recorded_duty_played_back_drives_the_plant(recorded, graph):
     recorder = graph.start("recorder", "output:=playback.mcap", topics)
     graph.start("plant", "armature_resistance:=5.0", "command_timeout:=2.0")
     graph.until(lambda: hall_voltage, "the plant")
+    graph.until(lambda: graph.node.count_subscribers("hall_voltage") >= 2, "the recorder to listen to the sensor")
+    graph.until(lambda: graph.node.count_subscribers("applied_duty") >= 1, "the recorder to listen to the duty")
     player = graph.run([sys.executable, str(PLAYER), str(recorded)])
     graph.until(lambda: player.poll() is not None, "the end of the recording")
     status, output = graph.ended(player, by=None)

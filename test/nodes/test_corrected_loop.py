@@ -10,6 +10,7 @@ pytest.importorskip("rclpy")
 from std_msgs.msg import Float64
 
 from pierburg_ros.cli.app import main
+from pierburg_ros.processes import free_domain
 
 TICKS = 500
 START, TARGET = 0.3, 0.9
@@ -47,15 +48,16 @@ def overshoot(graph, model, setpoints, *arguments) -> float:
 
 
 @pytest.mark.ros
-def test_the_tuned_file_is_better_on_the_plant_that_has_the_effect(corrected, domain, tmp_path):
+def test_the_tuned_file_is_better_on_the_plant_that_has_the_effect(corrected, tmp_path):
     from support.ros_graph import Graph
 
     model, controller = corrected
     setpoints = tmp_path / "setpoints.csv"
     setpoints.write_text(f"time,setpoint\n0,{START}\n0.5,{TARGET}\n")
-    with Graph(domain, tmp_path) as graph:
+    # a domain for each: nobody is left from the run before
+    with Graph(free_domain(), tmp_path) as graph:
         before = overshoot(graph, model, setpoints)
-    with Graph(domain, tmp_path) as graph:
+    with Graph(free_domain(), tmp_path) as graph:
         after = overshoot(graph, model, setpoints, "--params-file", str(controller))
     assert before > 0.05
     assert after < 0.02

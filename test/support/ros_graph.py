@@ -24,6 +24,9 @@ DEADLINE = 180.0
 LEAVE = 10.0
 """Longest wait for nodes to end, and for the graph to forget them [s]."""
 
+KEPT = 10_000
+"""Messages of a topic that wait for the observer: 20 s at 500 Hz, in which a busy machine may not let it run."""
+
 
 class Graph:
     """Starts nodes under a ROS domain of its own and watches what they publish."""
@@ -74,7 +77,7 @@ class Graph:
             self.received[topic].append(message)
             self.stamps[topic].append(info)
 
-        self._subscriptions.append(self.node.create_subscription(kind, topic, take, 1000))
+        self._subscriptions.append(self.node.create_subscription(kind, topic, take, KEPT))
         return self.received[topic]
 
     def until_connected(self) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
+from pierburg_ros.diagnosis.remainder.confirmed import confirmed
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
@@ -79,8 +80,8 @@ def remainder(
             drifted = Explanation() if shape.base is found.nominal else explanation
             base = estimator.at(drifted, shape.base.values)
         known = estimates(estimator, base, pool.map)
-    confirmed = shape.after < BETTER * shape.before
-    return Remainder(found.estimator.restated(base), known, left_out, weights, shape if confirmed else None)
+        stands = confirmed(shape, data, pool)
+    return Remainder(found.estimator.restated(base), known, left_out, weights, shape if stands else None)
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:

@@ -94,7 +94,7 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
         if math.isnan(speed):
             continue
         side = math.copysign(1.0, speed) if speed != 0.0 else (1.0 if index > middle else -1.0)
-        weight, drag = load.load(record, angle, 0.0, 0.0)[0], friction.damping(record, side) * speed
+        weight, drag = load.load_at(record, angle, 0.0, 0.0), friction.damping(record, side) * speed
         level = 0.0
         for _ in range(8):  # the level may depend on the motor torque, which it is a part of
             level = friction.level(record, side, speed, angle, weight + drag + side * level)[0]
@@ -116,7 +116,7 @@ def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Chara
 def load_torque(model: Model, angle: Signal) -> Signal:
     """Torque that loads the standing shaft at the start [N.m], positive closes, shape (angles,)."""
     record = model.record()[0]
-    return np.array([load.load(record, float(each), 0.0, 0.0)[0] for each in angle])
+    return np.array([load.load_at(record, float(each), 0.0, 0.0) for each in angle])
 
 
 def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Characteristic:

@@ -65,6 +65,13 @@ def load(p, angle, velocity, pushed):
 
 
 @kernel
+def load_at(p, angle, velocity, time):
+    """Load torque of the shaft [N.m], positive closes, at `time` [s]."""
+    pushed = external_load.torque(p.external_load, time), external_load.rate(p.external_load, time)
+    return load(p, angle, velocity, pushed)[0]
+
+
+@kernel
 def contact(p, angle, velocity):
     """Torque of the elastic stops [N.m], positive closes, with its stiffness and damping."""
     stop = p.stop_compliance

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pierburg_ros.effects import external_load
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import damping, level
-from pierburg_ros.plant.torques.load import load, ripple
+from pierburg_ros.plant.torques.load import load_at, ripple
 
 
 @kernel
@@ -19,8 +18,7 @@ def missing(p, motor, time, angle, velocity, acceleration):
     torque = np.empty(time.size)
     for i in range(time.size):
         direction = np.sign(velocity[i])
-        pushed = external_load.torque(p.external_load, time[i]), 0.0
-        known = load(p, angle[i], velocity[i], pushed)[0] + ripple(p, angle[i])[0]
+        known = load_at(p, angle[i], velocity[i], time[i]) + ripple(p, angle[i])[0]
         friction = direction * level(p, direction, velocity[i], angle[i], motor[i])[0]
         resisting = friction + damping(p, direction) * velocity[i]
         torque[i] = motor[i] - known - resisting - p.total_inertia * acceleration[i]

@@ -29,8 +29,11 @@ DECLARED = struct.Struct("<HH")
 IN_CHUNK = (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE)
 PRIVATE = 0x80
 """Opcodes from here on are for applications of their own, which others pass over."""
+LEAST_PACKED = 2
+"""Bytes that a message takes at least, packed. Measured: 3.7 of the densest there is, two topics of one constant value
+at perfectly regular times in one chunk, by zstd at level 19; not varied."""
 SLACK = 65_536
-"""Records that a file may hold beyond one a byte; every message has a time and a sequence, which take a byte packed."""
+"""Records that a file may hold beyond one in `LEAST_PACKED` bytes."""
 
 
 def read_mcap(path: Path, bag: Bag) -> None:
@@ -56,7 +59,7 @@ class McapRecords:
     def __init__(self, bag: Bag, size: int) -> None:
         self.bag = bag
         self.size = size
-        self.records = size + SLACK
+        self.records = size // LEAST_PACKED + SLACK
         self.unpacked = most_unpacked(size)
         self.schemas: dict[int, tuple[str, Definition]] = {}
         self.topics: dict[int, str | None] = {}

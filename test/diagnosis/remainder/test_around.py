@@ -7,12 +7,15 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
+from pierburg_ros.diagnosis.remainder.confirmed import confirmed
+from pierburg_ros.diagnosis.remainder.shape import fit_shape
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.estimation.data import Data, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
+from pierburg_ros.workers import workers
 
 NOMINAL = Model.nominal(read_actuator("odrive")).with_values({"viscous_friction.coefficient": 0.01})
 TIME = np.arange(0.0, 6.0, 0.002)
@@ -70,3 +73,12 @@ def test_several_recordings_vouch_for_a_ripple_that_they_share() -> None:
     assert (said.helped, said.parts, said.recordings) == (2, 2, ("turns 4", "turns 5"))
     assert said.beside < 0.5 * said.without
     assert vouched_around(data_on(NOMINAL.with_values({"coulomb_friction": 0.012}), 4, 5), NOMINAL) is None
+
+
+def test_recordings_left_out_confirm_what_repeats_itself() -> None:
+    """A recording that does not train tells nothing of the torque over a turn, though it goes round."""
+    rotor = rippled()
+    data = data_on(rotor, 4, 5)
+    with workers(1) as pool:
+        shape = fit_shape(data, [lambda _: rotor.with_residual(None)], pool)
+        assert confirmed(shape, data, pool)

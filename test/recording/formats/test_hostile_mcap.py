@@ -118,6 +118,15 @@ def test_more_records_than_a_file_can_hold_are_refused(refusal):
     assert "more records than" in refusal(DECLARED + chunk(zstd(tiny), "zstd", len(tiny)) * 3)
 
 
+def test_the_densest_recording_reads(tmp_path):
+    """Constant values at perfectly regular times, packed as small as they get."""
+    records = b"".join(sample(number, k) for k in range(1, 100_000) for number in (1, 2))
+    packed = zstandard.ZstdCompressor(level=19).compress(records)
+    path = tmp_path / "run.mcap"
+    path.write_bytes(MAGIC + DECLARED + chunk(packed, "zstd", len(records)) + END)
+    assert read_recording(path).time.size == 99_999
+
+
 def test_a_file_without_its_end_reads_as_far_as_it_goes(tmp_path):
     path = tmp_path / "run.mcap"
     path.write_bytes(MAGIC + DECLARED + SAMPLES + sample(1, 20)[:-3])
