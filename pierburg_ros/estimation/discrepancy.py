@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.run import Run
 from pierburg_ros.kernel import kernel
 
 SPAN = 24
@@ -29,6 +30,10 @@ sample is white noise, and what lasts twice as long as a recording is the same a
 SMALLEST, LARGEST = 1e-3, 10.0
 """Range of its size that is searched, in noises and in sizes of the residual. Derived: a thousandth of the noise
 changes no likelihood, and what is ten times the residual is not seen to vary."""
+FORGOTTEN = 50.0
+"""Time of a discrepancy's clock after which nothing is left of it. Derived: exp(-sqrt(3) 50) is 2e-38."""
+TINY = 1e-12
+"""Variance [noise^2] of a discrepancy that is none. Derived: it changes innovations by as little as rounding does."""
 NEAREST = 1e-3
 """Shortest reach that is searched, as a share of the way of a recording. Chosen: a thousandth of it, 0.05 rad where the
 valve goes through its travel thirty times; not varied."""
@@ -38,10 +43,16 @@ valve goes through its travel thirty times; not varied."""
 class Discrepancy:
     """A disturbance added to the measured signal: it stands for what a simulation lacks.
 
-    An Ornstein-Uhlenbeck process of standard deviation `size` [noise] whose clock runs with time and with the way of
-    the shaft: it forgets within `memory` [s] at rest, and within `reach` [noise] of movement. A shaft that sets off at
-    the wrong moment ends elsewhere and stays there until it moves again. (Kennedy and O'Hagan, Bayesian calibration of
-    computer models, J. R. Stat. Soc. B 63, 2001.) What it predicts from the samples before is no evidence.
+    A Gaussian process of standard deviation `size` [noise] whose clock runs with time and with the way of the shaft: it
+    forgets within `memory` [s] at rest, and within `reach` [noise] of movement. A shaft that sets off at the wrong
+    moment ends elsewhere and stays there until it moves again. (Kennedy and O'Hagan, Bayesian calibration of computer
+    models, J. R. Stat. Soc. B 63, 2001.) What it predicts from the samples before is no evidence.
+
+    Its covariance is (1 + sqrt(3) s) exp(-sqrt(3) s) after a time s of the clock (Matern, of smoothness 3/2: Rasmussen
+    and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17), as a process of two states (Hartikainen and
+    Sarkka, Kalman filtering and smoothing solutions to temporal Gaussian process regression models, IEEE MLSP 2010). It
+    has a slope and no kinks, as an angle has that a wrong torque turns: what a wrong torque does is foreseen, and
+    no evidence for an effect that bends to it.
     """
 
     size: float
@@ -55,7 +66,7 @@ class Kalman:
     def __init__(self, data: Data, seen: Flags) -> None:
         runs, noise = data.runs, data.noise
         self.seen = seen
-        self.steps = np.concatenate([np.append(np.inf, np.diff(run.time)) for run in runs])
+        self.steps = np.concatenate([_steps(run) for run in runs])
         self.run = np.repeat(np.arange(len(runs)), [run.time.size for run in runs])
         self.way = np.concatenate([way(run.measured / noise) for run in runs])
 
@@ -64,11 +75,16 @@ class Kalman:
         own = discrepancy.size, discrepancy.memory, discrepancy.reach
         return Filter(self.seen, *_gains(self.steps, self.way, self.seen, *own))
 
-    def most_likely(self, residual: Signal) -> Discrepancy:
-        """The discrepancy under which a residual [noise], shape (samples,), is most likely."""
+    def most_likely(self, residual: Signal, beside: Signal | None = None) -> Discrepancy:
+        """The discrepancy under which a residual [noise], shape (samples,), is most likely.
+
+        Where there is a column `beside` it, shape (samples,), with as much of that taken out as suits each.
+        """
 
         def cost(point: Signal) -> float:
-            return evidence(self.filtered(Discrepancy(*np.exp(point))), residual)
+            filtered = self.filtered(Discrepancy(*np.exp(point)))
+            rest = residual if beside is None else residual - share(filtered, residual, beside) * beside
+            return evidence(filtered, rest)
 
         scale = max(float(np.std(residual[self.seen])), 0.1)
         whole = float(np.max(np.bincount(self.run, weights=self.way), initial=0.0)) + 1.0
@@ -83,6 +99,14 @@ class Kalman:
         options = {"xatol": 0.02, "fatol": 0.5}
         best = minimize(cost, min(starts, key=cost), method="Nelder-Mead", bounds=bounds, options=options).x
         return Discrepancy(*(float(value) for value in np.exp(best)))
+
+
+def _steps(run: Run) -> Signal:
+    """Time [s] from each sample of a run to the next one, infinite before those at which the simulation begins anew."""
+    steps = np.append(np.inf, np.diff(run.time))
+    if run.shooting is not None:
+        steps[run.shooting.first] = np.inf
+    return steps
 
 
 @dataclass(frozen=True)
@@ -114,6 +138,12 @@ def evidence(filtered: Filter, residual: Signal) -> float:
     return float(innovations @ innovations) + 2.0 * filtered.log_spread
 
 
+def share(filtered: Filter, residual: Signal, column: Signal) -> float:
+    """The multiple of a column, shape (samples,), that makes what is left of a residual likeliest."""
+    left, own = filtered(residual), filtered(column)
+    return float(own @ left) / max(float(own @ own), 1e-300)
+
+
 def way(measured: Signal) -> Signal:
     """How far the shaft goes from each sample to the next [noise], 0 where that is not told from the noise."""
     half = SPAN // 2
@@ -126,27 +156,45 @@ def way(measured: Signal) -> Signal:
 def _gains(
     steps: Signal, way: Signal, seen: Flags, size: float, memory: float, reach: float
 ) -> tuple[Signal, Signal, Signal]:
-    keep, gain, spread = np.empty(steps.size), np.empty(steps.size), np.empty(steps.size)
-    known = 0.0
+    keep, gain, spread = np.empty((steps.size, 4)), np.empty((steps.size, 2)), np.empty(steps.size)
+    level, rate = size * size, 3.0 * size * size
+    p, q, r = level, 0.0, rate
     for k in range(steps.size):
-        keep[k] = np.exp(-steps[k] / memory - way[k] / reach)
-        same = keep[k] * keep[k]
-        known = same * known + (1.0 - same) * size * size
-        spread[k] = np.sqrt(known + 1.0)
-        gain[k] = known / (known + 1.0)
+        keep[k] = _kept(min(steps[k] / memory + way[k] / reach, FORGOTTEN))
+        a, b, c, d = keep[k]
+        # what is known beyond the stationary covariance fades
+        u, v, w = p - level, q, r - rate
+        p = max(level + a * a * u + 2.0 * a * b * v + b * b * w, 0.0)
+        q = a * c * u + (a * d + b * c) * v + b * d * w
+        r = rate + c * c * u + 2.0 * c * d * v + d * d * w
+        spread[k] = math.sqrt(p + 1.0)
+        gain[k] = p / (p + 1.0), q / (p + 1.0)
         if seen[k]:
-            known *= 1.0 - gain[k]
+            p, q, r = p / (p + 1.0), q / (p + 1.0), r - q * q / (p + 1.0)
+        # rounding may not make it less than a correlation of 1 allows
+        if p > TINY:
+            r = max(r, q * q / p)
     return keep, gain, spread
+
+
+@kernel
+def _kept(elapsed: float) -> tuple[float, float, float, float]:
+    """What is left of value and slope after some time of the clock, by rows."""
+    root = math.sqrt(3.0) * elapsed
+    fade = math.exp(-root)
+    return (1.0 + root) * fade, elapsed * fade, -3.0 * elapsed * fade, (1.0 - root) * fade
 
 
 @kernel
 def _innovations(residual: Signal, seen: Flags, keep: Signal, gain: Signal, spread: Signal) -> Signal:
     result = np.zeros(residual.size)
-    state = 0.0
+    value = slope = 0.0
     for k in range(residual.size):
-        state *= keep[k]
+        a, b, c, d = keep[k]
+        value, slope = a * value + b * slope, c * value + d * slope
         if seen[k]:
-            innovation = residual[k] - state
+            innovation = residual[k] - value
             result[k] = innovation / spread[k]
-            state += gain[k] * innovation
+            value += gain[k, 0] * innovation
+            slope += gain[k, 1] * innovation
     return result

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded, lead, sensitivity
+from pierburg_ros.plant.decode import angle_per_unit, decoded, sensitivity, trail
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
@@ -85,7 +85,8 @@ class InitialState:
         if angle >= upper - margin:
             return upper, 0.0
         velocity = self.rate / per_radian
-        return angle + lead(model) * velocity, velocity
+        lag, play = trail(model)
+        return angle + lag * velocity + 0.5 * play * math.copysign(1.0, velocity) * (velocity != 0.0), velocity
 
     def _turning(self, model: Model) -> tuple[float, float]:
         """The same where the speed is measured; at rest where noise allows it."""

@@ -18,7 +18,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.torque_balance import WINDOW
 from pierburg_ros.plant import Inputs, Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded, lead, turned
+from pierburg_ros.plant.decode import angle_per_unit, decoded, trail, turned
 from pierburg_ros.plant.simulate import simulate_stretches
 from pierburg_ros.recording.noise import noise_of
 
@@ -41,15 +41,17 @@ for the steps of a real encoder are no white noise."""
 class Shooting:
     """Where stretches begin and what the samples there say: all of shape (stretches,).
 
-    `first` are their first samples, `level` and `rate` [1/s] the measured value there, `level_error` and `rate_error`
-    standard deviations. `length` [s] is that of a stretch.
+    `first` are their first samples, `level`, `rate` [1/s] and `curvature` [1/s^2] the measured value there and its
+    derivatives, each with its standard deviation. `length` [s] is that of a stretch.
     """
 
     first: np.ndarray
     level: Signal
     rate: Signal
+    curvature: Signal
     level_error: Signal
     rate_error: Signal
+    curvature_error: Signal
     length: float
 
     @staticmethod
@@ -58,15 +60,17 @@ class Shooting:
         first = _first_samples(time, length)
         noise = noise_of(time, measured)
         found = np.array([_local(time, measured, sample, noise) for sample in first.tolist()])
-        level, rate, level_error, rate_error = found.T
-        return Shooting(first, level, rate, level_error, rate_error, length)
+        level, rate, curvature, level_error, rate_error, curvature_error = found.T
+        return Shooting(first, level, rate, curvature, level_error, rate_error, curvature_error, length)
 
     def simulated(self, model: Model, inputs: Inputs, time: Signal, measured: Signal, quantity: str) -> Signal:
         """What a model measures, each stretch from the beginning that suits its samples best, shape (samples,)."""
         angle, velocity, angle_error, velocity_error = self._states(model, time, measured, quantity)
+        shown = decoded(model, self.level, quantity)
 
         def shot(more_angle: Signal | float, more_velocity: Signal | float) -> Signal:
-            return simulate_stretches(model, inputs, time, self.first, angle + more_angle, velocity + more_velocity)
+            begun = angle + more_angle, velocity + more_velocity
+            return simulate_stretches(model, inputs, time, self.first, *begun, shown)
 
         best, move = shot(0.0, 0.0), np.zeros((2, self.first.size))
         slopes = shot(angle_error, 0.0) - best, shot(0.0, velocity_error) - best
@@ -83,12 +87,22 @@ class Shooting:
     def _states(
         self, model: Model, time: Signal, measured: Signal, quantity: str
     ) -> tuple[Signal, Signal, Signal, Signal]:
-        """Angle [rad] and velocity [rad/s] that the samples show, and how far each may be off."""
+        """Angle [rad] and velocity [rad/s] that the samples show, and how far each may be off.
+
+        What a sensor with a lag shows changes by as much as it is behind, over the lag: that is how far the shaft is
+        ahead, and so is its velocity.
+        """
         scale = abs(angle_per_unit(model))
         value = decoded(model, self.level, quantity)
         if quantity != "speed":
-            velocity = self.rate * angle_per_unit(model)
-            return value + lead(model) * velocity, velocity, self.level_error * scale, self.rate_error * scale
+            late, play = trail(model)
+            velocity = (self.rate + late * self.curvature) * angle_per_unit(model)
+            angle = value + late * self.rate * angle_per_unit(model) + 0.5 * play * np.sign(velocity)
+            angle_error, velocity_error = (
+                np.hypot(own, late * next_own) * scale
+                for own, next_own in ((self.level_error, self.rate_error), (self.rate_error, self.curvature_error))
+            )
+            return angle, velocity, angle_error, velocity_error
         angle = turned(model, time, measured, quantity)[self.first]
         return angle, value, np.full(value.size, UNKNOWN_ANGLE * model.scales.angle), self.level_error * scale
 
@@ -149,13 +163,13 @@ def _first_samples(time: Signal, length: float) -> np.ndarray:
         first.append(following)
 
 
-def _local(time: Signal, measured: Signal, sample: int, noise: float) -> tuple[float, float, float, float]:
-    """Value and rate at a sample from a parabola through those around it, and their standard deviations."""
+def _local(time: Signal, measured: Signal, sample: int, noise: float) -> Signal:
+    """Value, rate and curvature at a sample from a parabola through those around it, then their standard deviations."""
     start = min(max(sample - WINDOW // 2, 0), max(time.size - WINDOW, 0))
     near = slice(start, start + WINDOW)
     elapsed = time[near] - time[sample]
     powers = np.stack([np.ones(elapsed.size), elapsed, elapsed**2], axis=1)
     inverse = np.linalg.pinv(powers)
-    level, rate, _ = inverse @ measured[near]
-    level_error, rate_error, _ = noise * np.linalg.norm(inverse, axis=1)
-    return float(level), float(rate), float(level_error), float(rate_error)
+    derivative = np.array([1.0, 1.0, 2.0])
+    errors = noise * np.linalg.norm(inverse, axis=1)
+    return np.concatenate([derivative * (inverse @ measured[near]), derivative * errors])

@@ -27,9 +27,10 @@ def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(record["hall_voltage_closed"] + sensor.per_radian(record) * np.asarray(angle, dtype=np.float64))
 
 
-def lead(model: Model) -> float:
-    """Time [s] by which an evenly moving shaft is ahead of what the sensor of `model` shows."""
-    return float(sensor.lead(model.record()[0]))
+def trail(model: Model) -> tuple[float, float]:
+    """Lag [s] and play [rad] by which the sensor of `model` is behind a shaft that moves evenly."""
+    lag, play = sensor.trail(model.record()[0])
+    return float(lag), float(play)
 
 
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:

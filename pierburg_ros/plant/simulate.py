@@ -141,16 +141,22 @@ def simulate_many(
 
 
 def simulate_stretches(
-    model: Model, inputs: Inputs, sample_times: ArrayLike, first: NDArray[np.int64], angle: Signal, velocity: Signal
+    model: Model,
+    inputs: Inputs,
+    sample_times: ArrayLike,
+    first: NDArray[np.int64],
+    angle: Signal,
+    velocity: Signal,
+    lagged: Signal,
 ) -> Signal:
     """`simulate` in stretches that begin at the samples `first`, each at its own angle [rad] and velocity [rad/s].
 
-    `first`, `angle` and `velocity` are of shape (stretches,).
+    `lagged` is what a slow sensor shows there [rad, of a velocity rad/s]; all of shape (stretches,).
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
     states = np.zeros(first.size, STATE)
-    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, output)
+    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, lagged, output)
     return output
 
 
@@ -203,13 +209,14 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
 
 @kernel
 def run_stretches(
-    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, output
+    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, lagged, output
 ):
     """`run` from each of the samples `first` to the next, at its own angle and velocity; `states` are all zeros."""
     for stretch in range(first.size):
         end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
         times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
         place(p, states[stretch], angle[stretch], velocity[stretch])
+        states[stretch].sensor_lag.lagged = lagged[stretch]
         begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
         run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
 

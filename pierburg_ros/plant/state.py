@@ -9,7 +9,7 @@ import numpy as np
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import level
-from pierburg_ros.plant.torques.sensor import lead, sensed
+from pierburg_ros.plant.torques.sensor import sensed, trail
 
 QUEUE = 1024
 """Changes of the command that may be under way at once when the input is delayed."""
@@ -91,8 +91,10 @@ def place(p, s, angle, velocity):
         angle = min(max(angle, p.lower_stop), p.upper_stop)
     s.angle = s.motor_angle = angle
     s.velocity = s.motor_velocity = velocity
-    s.sensor_hysteresis.magnet = s.sensor_hysteresis.followed = sensed(p, s)
-    s.sensor_lag.lagged = sensed(p, s) - lead(p) * velocity
+    s.sensor_hysteresis.followed = sensed(p, s)
+    lag, play = trail(p)
+    s.sensor_hysteresis.magnet = sensed(p, s) - 0.5 * play * np.sign(velocity)
+    s.sensor_lag.lagged = s.sensor_hysteresis.magnet - lag * velocity
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1
     s.supply = np.nan

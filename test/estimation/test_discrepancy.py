@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from support.recordings import data_on, recording
 
 from pierburg_ros.estimation.data import Data
@@ -20,14 +21,16 @@ def kalman(data: Data) -> Kalman:
 
 
 def wandering(kalman: Kalman, size: float, memory: float, reach: float, seed: int = 1) -> np.ndarray:
-    """White noise of 1 beside an Ornstein-Uhlenbeck process, drawn step by step."""
-    random = np.random.default_rng(seed)
-    keep = np.exp(-kalman.steps / memory - kalman.way / reach)
-    state, values = 0.0, np.empty(keep.size)
-    for k, share in enumerate(keep):
-        state = share * state + size * np.sqrt(1.0 - share**2) * random.standard_normal()
-        values[k] = state
-    return values + random.standard_normal(keep.size)
+    """White noise of 1 beside what two equal poles make of white noise, drawn step by step with matrix exponentials."""
+    random, root = np.random.default_rng(seed), np.sqrt(3.0)
+    poles, lasting = np.array([[0.0, 1.0], [-3.0, -2.0 * root]]), size**2 * np.diag([1.0, 3.0])
+    elapsed = np.minimum(kalman.steps / memory + kalman.way / reach, 50.0)
+    state, values = np.zeros(2), np.empty(elapsed.size)
+    for k, kept in enumerate(expm(poles * elapsed[:, None, None])):
+        added = lasting - kept @ lasting @ kept.T
+        state = kept @ state + random.multivariate_normal(np.zeros(2), added, method="eigh", check_valid="ignore")
+        values[k] = state[0]
+    return values + random.standard_normal(elapsed.size)
 
 
 def test_without_size_a_residual_stays_as_it_is(kalman):
@@ -48,7 +51,8 @@ def test_the_likelihood_is_that_of_the_joint_normal_distribution(kalman, data):
     """Against the covariance matrix of the first samples, factored as a whole."""
     first, (size, memory, reach) = 60, (3.0, 0.2, 500.0)
     clock = np.cumsum(np.append(0.0, (kalman.steps / memory + kalman.way / reach)[1:first]))
-    covariance = size**2 * np.exp(-np.abs(clock[:, None] - clock)) + np.eye(first)
+    apart = np.sqrt(3.0) * np.abs(clock[:, None] - clock)
+    covariance = size**2 * (1.0 + apart) * np.exp(-apart) + np.eye(first)
     residual = np.zeros(kalman.seen.size)
     residual[:first] = np.random.default_rng(2).standard_normal(first)
     few = Kalman(data, np.arange(kalman.seen.size) < first)

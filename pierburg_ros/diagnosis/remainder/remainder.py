@@ -52,10 +52,8 @@ def remainder(
     """Physics beyond one explanation, and the shape of what is left.
 
     What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
-    on recordings left out, a single one for quantities that carry most of the evidence when it is counted against what
-    remains. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it. After a
-    search that was stopped nothing is named that drift alone surpasses on samples that validate: what explains them
-    together may not have been tried.
+    on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
+    what remains. What is then left is fitted as a torque over angle and velocity, kept where unseen data confirm it.
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
@@ -69,7 +67,7 @@ def remainder(
             fit, left_out = shared
             base = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found, deadline):
+        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found):
             left_out, weights = {}, _by_effect(stood)
             if vouched is not None:
                 left_out, weights = dict.fromkeys(weights, vouched), {}
@@ -87,21 +85,20 @@ def remainder(
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What carries most of the evidence of a single recording."""
+    """What unseen samples of a single recording confirm."""
     return (found.beside or supported(found.data, found.nominal, pool, progress)).named
 
 
-def _doubtful(stood: Supported, found: Found, deadline: Deadline) -> bool:
-    """Whether the recalibrated model does better on samples that validate, after a search that was stopped.
+def _doubtful(stood: Supported, found: Found) -> bool:
+    """Whether the recalibrated model does better, or hardly worse, where a simulation begins again and again.
 
-    Where a simulation begins again and again an error there is no bad luck, and it has to do worse by a tenth.
+    An error there is no bad luck, and it has to do worse by a tenth on samples that validate. What was read from the
+    samples themselves, without a free number, stands on no simulation.
     """
-    again = any(run.shooting for run in found.data.runs)
-    if not (again or deadline.stopped):
+    if not (stood.scored.fit.explanation.names and any(run.shooting for run in found.data.runs)):
         return False
     own = Estimator(found.data, stood.nominal).validation_misfit(stood.scored.fit)
-    share = BETTER**2 if again else 1.0
-    return own > share * found.estimator.validation_misfit(found.recalibrated)
+    return own > BETTER**2 * found.estimator.validation_misfit(found.recalibrated)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

@@ -72,9 +72,11 @@ def by_evidence(gain: float) -> str:
 
 def by_weight(weight: Weight) -> str:
     """Why an effect is named although something remains."""
+    seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
     return (
         f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
         f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
+        f"{seen}"
     )
 
 

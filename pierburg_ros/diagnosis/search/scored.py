@@ -13,11 +13,15 @@ from pierburg_ros.plant import Model
 
 @dataclass(frozen=True)
 class Scored:
-    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two."""
+    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two.
+
+    `unseen` is the same of the samples that validate, when those that train are known.
+    """
 
     fit: Fit
     discrepancy: Discrepancy
     cost: float
+    unseen: float = 0.0
 
     @property
     def left(self) -> float:
@@ -30,7 +34,9 @@ def scored(data: Data, fit: Fit) -> Scored:
     kalman = Kalman(data, data.train)
     residual = data.residual(fit.model, fit.switch)
     discrepancy = kalman.most_likely(residual)
-    return Scored(fit, discrepancy, evidence(kalman.filtered(discrepancy), residual))
+    cost = evidence(kalman.filtered(discrepancy), residual)
+    both = evidence(Kalman(data, data.train | data.validation).filtered(discrepancy), residual)
+    return Scored(fit, discrepancy, cost, both - cost)
 
 
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
+from pierburg_ros.diagnosis.search.reversals import play_at_reversals
 from pierburg_ros.diagnosis.search.scored import Scored, scored, settled
 from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, canonical, quantities, without
+from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, canonical, quantities, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
@@ -28,13 +31,9 @@ SETTLED = 3
 the discrepancy; not varied."""
 MOST = 4
 """Most quantities that are added. Work: each is a round of a second or more; not varied."""
-CARRIED = 2.0 / 3.0
-"""Share that a quantity must carry of the evidence against the model without it; the rest remains with it as well.
-Chosen: twice what remains; on n = 18 recordings true effects carried 0.68 to 0.93 of it when they were named, and
-others at most 0.66 when that was decided; not varied."""
-BARELY = 0.95
-"""What is left after one more quantity, over what was left before, from which no further one is tried. Measured: n = 2
-recordings that something else is in gained 1 to 5 % from then on; a quantity that is named leaves a third."""
+CONFIRMED = 0.5
+"""Share of the gain of a quantity, from the samples that train to as many that validate, that these must show as well.
+Derived: halfway between what fits the training samples alone, none of it, and what is there, all of it."""
 OPEN = 0.1
 """What is left over what the nominal model leaves, in -2 log likelihood, up to which a search for an explanation of all
 goes on. Measured: n = 3 recordings that something outside the catalogue is in left 0.23 to 0.72 of it; of n = 8 others
@@ -45,17 +44,33 @@ five left at most 0.06, and three 0.18 to 0.53, where adding one by one had miss
 class Weight:
     """What speaks for a quantity, in -2 log likelihood: what leaving it out costs, `gain`, and what is `left` with it.
 
-    Left is how much less likely the residual is than white noise of the sensor's size.
+    Left is how much less likely the residual is than white noise of the sensor's size. `unseen` is what leaving it out
+    costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
+    are `expected` to show: its gain by their number over that of those that train.
     """
 
     gain: float
     left: float
+    unseen: float | None = None
+    expected: float = 0.0
 
     @property
     def carried(self) -> float:
         """Share of the evidence against the model without the quantity that it carries, 0 to 1."""
         gain, left = max(self.gain, 0.0), max(self.left, 0.0)
         return gain / max(gain + left, 1e-9)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether samples that no fit has seen say the same."""
+        return self.unseen is None or self.unseen >= CONFIRMED * self.expected
+
+    @property
+    def confidence(self) -> float:
+        """How far it is believed: by how much likelier it makes unseen samples, or by its share of the evidence."""
+        return (
+            self.carried if self.unseen is None else 1.0 / (1.0 + math.exp(-0.5 * min(max(self.unseen, -99.0), 99.0)))
+        )
 
 
 @dataclass(frozen=True)
@@ -86,37 +101,41 @@ class Beside:
     @property
     def open(self) -> bool:
         """Whether so little is left that an explanation of its size may account for all."""
-        return self.reached.left < OPEN * self.begun
+        return self.begun > 0.0 and self.reached.left < OPEN * self.begun
 
 
 def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) -> Beside:
-    """The likeliest explanation, and the largest of which each quantity carries most of the evidence against the rest.
+    """The likeliest explanation, and what of it unseen samples confirm.
 
     Quantities are added to the nominal model one by one, each the one that makes the recordings likeliest with its own
-    most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. Of the named,
-    those that do not carry enough are taken away again, the weakest first. It ends where one more addition helps no
-    further one, or too little is left for it.
+    most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. It ends where
+    one more helps no further. What bends to a remainder gains where it was fitted, and not on samples that validate:
+    of the named, those without whose gain there are taken away again, the weakest first.
     """
-    named: Supported | None = None
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
-    begun = reached.left
+    begun, weighed = reached.left, Supported(nominal, reached, {})
     for _ in range(MOST):
         following = _grown(data, nominal, reached, pool, progress)
-        if following is None:
+        if following is None or reached.cost - following.cost < SIGNIFICANT:
             break
         weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
-        before, reached = reached.left, weighed.scored
-        # who carries that share of the evidence leaves no more of it
-        carrying = None
-        if reached.left <= (1.0 - CARRIED) * begun:
-            carrying = _without(weighed, _weak, data, nominal, pool)
-        if carrying and len(carrying.weights) > (len(named.weights) if named else 0):
-            named = carrying
-        elif named is not None or reached.left > BARELY * before:
-            break
-        if reached.left < SIGNIFICANT:
-            break
-    return Beside(reached, begun, named)
+        reached = weighed.scored
+    named = _with_play(_without(weighed, _unconfirmed, data, nominal, pool), data, nominal)
+    return Beside(reached, begun, named if named.weights else None)
+
+
+def _with_play(named: Supported, data: Data, nominal: Model) -> Supported:
+    """`named` and the play of the sensor that shows at reversals.
+
+    A simulation that is wrong by more than the play turns round elsewhere, and a play does it no good.
+    """
+    play = play_at_reversals(data, named.scored.fit)
+    if play is None or play.gain < PROMISING:
+        return named
+    own = named.scored.fit
+    fit = Estimator(data, nominal).at(own.explanation.plus(play.variant), own.values)
+    weights = {**named.weights, play.variant: Weight(play.gain, play.left)}
+    return Supported(nominal, scored(data, fit), weights)
 
 
 @dataclass(frozen=True)
@@ -162,22 +181,23 @@ def _promise(
     return _Promise(ways[0][0], explanation, [{**fit.values, **start} for _, start in ways]) if ways else None
 
 
-def _idle(weight: Weight) -> bool:
+def _idle(quantity: Quantity, weight: Weight) -> bool:
     """Whether a quantity gains too little: a later one has made it needless."""
     return weight.gain < SIGNIFICANT
 
 
-def _weak(weight: Weight) -> bool:
-    """Whether a quantity does not carry enough of the evidence."""
-    return weight.carried < CARRIED
+def _unconfirmed(quantity: Quantity, weight: Weight) -> bool:
+    """Whether a quantity gains too little, or nothing on unseen samples; what acts only once is not seen again."""
+    once = isinstance(quantity, Variant) and EFFECT[quantity.effect].dated
+    return once or _idle(quantity, weight) or not weight.confirmed
 
 
 def _without(
-    weighed: Supported, out: Callable[[Weight], bool], data: Data, nominal: Model, pool: Executor
+    weighed: Supported, out: Callable[[Quantity, Weight], bool], data: Data, nominal: Model, pool: Executor
 ) -> Supported:
     """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
-    while any(out(weight) for weight in weighed.weights.values()):
-        weakest = min(weighed.weights, key=lambda quantity: weighed.weights[quantity].gain)
+    while leaving := {quantity: each.gain for quantity, each in weighed.weights.items() if out(quantity, each)}:
+        weakest = min(leaving, key=lambda quantity: leaving[quantity])
         best = weighed.scored
         estimator = Estimator(data, nominal, discrepancy=best.discrepancy)
         rest = estimator.fit(without(best.fit.explanation, weakest), best.fit.values, BRIEF)
@@ -189,13 +209,18 @@ def _weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Suppor
     """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
     estimator = Estimator(data, nominal, discrepancy=best.discrepancy)
 
-    def lacking(quantity: Quantity) -> float:
+    def lacking(quantity: Quantity) -> Scored:
         rest = without(best.fit.explanation, quantity)
         try:
-            return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF)).cost
+            return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF))
         except InputError:
-            return best.cost
+            return best
 
+    def weight(rest: Scored) -> Weight:
+        gain = rest.cost - best.cost
+        return Weight(gain, best.left, rest.unseen - best.unseen, expected * gain)
+
+    expected = float(data.validation.sum() / data.train.sum())
     own = quantities(best.fit.explanation)
-    costs = zip(own, pool.map(lacking, own), strict=True)
-    return Supported(nominal, best, {quantity: Weight(cost - best.cost, best.left) for quantity, cost in costs})
+    rests = zip(own, pool.map(lacking, own), strict=True)
+    return Supported(nominal, best, {quantity: weight(rest) for quantity, rest in rests})

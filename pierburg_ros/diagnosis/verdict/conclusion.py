@@ -17,8 +17,12 @@ from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
-from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.estimation.likelihood import EXPLAINED, OFF_GRID
 from pierburg_ros.plant import Model
+
+FEWEST = 2.0**-8
+"""Step of a converter, as a share of what is large for the sensor, from which it is named although something remains.
+Chosen: eight bits, fewer than converters in use have; finer steps are far below what remains. Not varied."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +69,12 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
     verdict, nominal = verdict_on(found.chosen), found.fits[Explanation()]
     if rest is not None:
         supports = {effect: _by_recordings(left_out) for effect, left_out in rest.left_out.items()}
-        supports.update({effect: Support(weight.carried, weight=weight) for effect, weight in rest.weights.items()})
-        base = rest.base
-        return Conclusion(verdict, base, base, nominal, found.recalibrated, [], rest.estimates, supports, rest.shape)
+        supports.update({effect: Support(weight.confidence, weight=weight) for effect, weight in rest.weights.items()})
+        base, shape, step = rest.base, rest.shape, _coarse(found)
+        if step:
+            base, supports[ROUNDING.id] = _rounded(base, step), Support(1.0)
+            shape = shape and replace(shape, model=shape.model.with_values({STEP: step}))
+        return Conclusion(verdict, base, base, nominal, found.recalibrated, [], rest.estimates, supports, shape)
     chosen, final = found.chosen, found.final
     supports = {variant.effect: _by_evidence(found, variant) for variant in chosen.explanation.variants}
     if step := found.data.step:
@@ -92,6 +99,12 @@ def verdict_on(chosen: Fit) -> Verdict:
     if chosen.explanation.variants:
         return "missing_physics"
     return "parameter_drift" if chosen.explanation.size else "consistent"
+
+
+def _coarse(found: Found) -> float:
+    """The step of the converter [measured unit] if that is worth a name beside what remains, otherwise 0."""
+    step, known = found.data.step, found.nominal.values[STEP]
+    return step if step > max(FEWEST * found.data.scales.reading, (1.0 + OFF_GRID) * known) else 0.0
 
 
 def _rounded(fit: Fit, step: float) -> Fit:

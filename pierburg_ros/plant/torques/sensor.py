@@ -21,9 +21,11 @@ def sensed(p, s):
 
 
 @kernel
-def lead(p):
-    """Time [s] by which a shaft that moves evenly is ahead of what its sensor shows; none where that is a velocity."""
-    return 0.0 if p.sensor == SPEED else p.sensor_lag.time_constant
+def trail(p):
+    """Lag [s] and play [rad] by which the sensor is behind a shaft that moves evenly; none where it senses velocity."""
+    if p.sensor == SPEED:
+        return 0.0, 0.0
+    return p.sensor_lag.time_constant, p.sensor_hysteresis.width
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.search.supported import CARRIED, Supported, Weight, supported
+from pierburg_ros.diagnosis.search.supported import CONFIRMED, Supported, Weight, supported
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
@@ -41,4 +41,11 @@ def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
     assert Weight(300.0, 100.0).carried == pytest.approx(0.75)
     assert Weight(-5.0, 100.0).carried == 0.0
     assert Weight(100.0, -5.0).carried == 1.0
-    assert 0.5 < CARRIED < 1.0
+
+
+def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
+    there, bent = (Weight(300.0, 100.0, unseen, 50.0) for unseen in (45.0, 5.0))
+    assert there.confirmed and not bent.confirmed
+    assert there.confidence > 0.99 > bent.confidence
+    assert Weight(300.0, 100.0).confirmed and Weight(300.0, 100.0).confidence == pytest.approx(0.75)
+    assert 0.0 < CONFIRMED < 1.0

@@ -88,6 +88,19 @@ def test_steps_of_the_converter_are_seen_and_not_believed() -> None:
     np.testing.assert_allclose(simulated / 0.02, np.round(simulated / 0.02), atol=1e-9)
 
 
+@pytest.mark.parametrize(("step", "known", "named"), [(0.02, 0.0, True), (0.002, 0.0, False), (0.02, 0.02, False)])
+def test_beside_what_remains_coarse_steps_are_named_that_the_model_lacks(
+    data: Data, step: float, known: float, named: bool
+) -> None:
+    nominal = NOMINAL.with_values({"sensor_quantization.step": known})
+    base = made_up(Explanation(), 2.0, nominal)
+    stepped = replace(found_among(replace(data, step=step), base), nominal=nominal)
+    found = conclude(stepped, Remainder(base, {}, {}, {}, None))
+    assert found.verdict == "unexplained"
+    assert found.final.explanation.effects == (("sensor_quantization",) if named else ())
+    assert found.model.values["sensor_quantization.step"] == (step if named else known)
+
+
 @pytest.mark.parametrize(("helped", "parts", "confidence"), [(3, 3, 0.8), (2, 4, 0.5), (0, 2, 0.25)])
 def test_few_recordings_leave_doubt(data: Data, helped: int, parts: int, confidence: float) -> None:
     """Laplace's rule of succession: helping in 3 of 3 parts is believed by (3 + 1) / (3 + 2)."""
