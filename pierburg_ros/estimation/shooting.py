@@ -69,8 +69,9 @@ class Shooting:
         shown = decoded(model, self.level, quantity)
 
         def shot(more_angle: Signal | float, more_velocity: Signal | float) -> Signal:
-            begun = angle + more_angle, velocity + more_velocity
-            return simulate_stretches(model, inputs, time, self.first, *begun, shown)
+            # what a slow sensor shows moves with the shaft: else it would swing towards it within the lag
+            begun = angle + more_angle, velocity + more_velocity, shown + more_angle
+            return simulate_stretches(model, inputs, time, self.first, *begun)
 
         best, move = shot(0.0, 0.0), np.zeros((2, self.first.size))
         slopes = shot(angle_error, 0.0) - best, shot(0.0, velocity_error) - best
