@@ -22,10 +22,15 @@ def fitted(
     """`model` fitted to `recordings`, and which of the `free` parameters run away from every range.
 
     One that the fit does as well without, to a tenth of its error, is held as described. Where a shaft goes round, what
-    repeats itself with every turn is part of the model: else the inertia, which smooths the motion, stands for it.
+    repeats itself with every turn is part of the model if the error falls by a tenth: else the inertia, which smooths
+    the motion, stands for it.
     """
-    base = with_what_repeats(model, recordings)
-    found = fit(base, recordings, free, starts=starts, jobs=jobs)
+    base, found = model, fit(model, recordings, free, starts=starts, jobs=jobs)
+    if repeating := what_repeats(found.model, recordings):
+        beside = model.with_residual(repeating.residual_torque)
+        again = fit(beside, recordings, free, starts=starts, jobs=jobs)
+        if EXPLAINED * again.rmse < found.rmse:
+            base, found = beside, again
     found, held = _held(found, base, recordings, jobs)
     for _ in range(FOLLOWED):
         if not runaway(found):
@@ -49,11 +54,12 @@ def _held(
     return best, held
 
 
-def with_what_repeats(model: Model, recordings: Sequence[Recording]) -> Model:
-    """`model` with the torque that repeats itself with every turn, where one is seen and it has no other of its own."""
-    if model.residual_torque is not None:
-        return model
-    return with_turn(data_of(recordings, model), model) or model
+def what_repeats(fitted: Model, recordings: Sequence[Recording]) -> Model | None:
+    """A fitted model with the torque over a turn that it lacks; None where none is seen, or it has one of its own.
+
+    A torque told in the wrong scale repeats itself with the angle too, so the scale is fitted first.
+    """
+    return None if fitted.residual_torque is not None else with_turn(data_of(recordings, fitted), fitted)
 
 
 def runaway(found: Identified) -> tuple[str, ...]:

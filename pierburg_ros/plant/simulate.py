@@ -17,7 +17,7 @@ from pierburg_ros.plant.motion import steady
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
 from pierburg_ros.plant.state import STATE, new_state, place
-from pierburg_ros.plant.torques.sensor import read_all, shown
+from pierburg_ros.plant.torques.sensor import read_all, show, shown
 from pierburg_ros.workers import workers
 
 LONG_BEFORE = 1e9
@@ -216,7 +216,7 @@ def run_stretches(
         end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
         times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
         place(p, states[stretch], angle[stretch], velocity[stretch])
-        states[stretch].sensor_lag.lagged = lagged[stretch]
+        show(states[stretch], lagged[stretch])
         begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
         run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
 

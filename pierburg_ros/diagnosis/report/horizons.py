@@ -28,9 +28,10 @@ def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
     found = []
     for after in (*HORIZONS, math.inf):
         stretches = leading_to(data, after, LAST * after) if math.isfinite(after) else restarted(data, after)
-        samples = stretches.test
+        # a recording may be too short for any stretch
+        tested = bool(stretches.runs) and bool(stretches.test.any())
         errors = [
-            rms(stretches.residual(*model)[samples]) * data.noise if samples.any() else math.nan for model in models
+            rms(stretches.residual(*model)[stretches.test]) * data.noise if tested else math.nan for model in models
         ]
         nominal, recalibrated, final = errors
         found.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))

@@ -36,5 +36,5 @@ def test_the_effect_in_both_changes_nothing(effect):
     model = FITTED.with_values({f"{effect}.{name}": value for name, value in values.items()})
     before, after, alone = (compare(*pair).rmse for pair in ((FITTED, recording), (model, changed), (FITTED, changed)))
     # an effect of the sensor smooths or shifts what the model misses too
-    assert after == pytest.approx(before, rel=1e-5 if effect in INPUT else 0.1)
+    assert after == pytest.approx(before, rel=1e-4 if effect in INPUT else 0.1)
     assert effect not in {*INPUT, "sensor_lag"} or alone > 1.2 * before
