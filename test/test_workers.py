@@ -13,8 +13,9 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.workers import cores, workers
 
 INTERRUPTED = """
-import threading
+import signal, threading
 from pierburg_ros.workers import workers
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts what runs in the background without
 def endless(_):
     print("begun", flush=True)
     threading.Event().wait(600.0)
