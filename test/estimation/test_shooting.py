@@ -132,6 +132,15 @@ def test_stretches_begin_with_the_shaft_ahead_of_a_sensor_that_lags():
     assert shown == pytest.approx(0.2 + 3.0 * (time - 0.05), abs=1e-9)
 
 
+def test_a_short_lag_goes_over_into_none_under_a_wrong_model() -> None:
+    """What a slow sensor shows is moved with the shaft: a lag far below a sample changes next to nothing."""
+    recording = swung(PENDULUM)
+    run = run_of(recording, PENDULUM)
+    heavy = PENDULUM.with_values({"total_inertia": 1.1 * 0.147})
+    none, short = (run.simulated(heavy.with_values({"sensor_lag.time_constant": lag})) for lag in (0.0, 1e-5))
+    assert np.abs(short - none).max() < 0.1 * NOISE
+
+
 def test_uneven_samples_make_no_stretch_much_longer_than_it_should_be() -> None:
     """Where a stretch takes as many samples as it must have, the next one begins after it all the same."""
     random = np.random.default_rng(5)

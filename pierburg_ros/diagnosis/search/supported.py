@@ -69,6 +69,11 @@ class Weight:
         return self.unseen is None or self.unseen >= CONFIRMED * self.expected
 
     @property
+    def believed(self) -> bool:
+        """Whether it carries enough, and unseen samples confirm it."""
+        return self.carried >= CARRIED and self.confirmed
+
+    @property
     def confidence(self) -> float:
         """How far it is believed: by how much likelier it makes unseen samples, or by its share of the evidence."""
         return (
@@ -192,7 +197,7 @@ def _idle(quantity: Quantity, weight: Weight) -> bool:
 def _unconfirmed(quantity: Quantity, weight: Weight) -> bool:
     """Whether a quantity gains or carries too little, or gains nothing on unseen samples, as what acts only once."""
     once = isinstance(quantity, Variant) and EFFECT[quantity.effect].dated
-    return once or _idle(quantity, weight) or weight.carried < CARRIED or not weight.confirmed
+    return once or _idle(quantity, weight) or not weight.believed
 
 
 def _without(

@@ -49,3 +49,10 @@ def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
     assert there.confidence > 0.99 > bent.confidence
     assert Weight(300.0, 100.0).confirmed and Weight(300.0, 100.0).confidence == pytest.approx(0.75)
     assert 0.0 < CONFIRMED < 1.0
+
+
+def test_what_unseen_samples_confirm_is_not_believed_where_it_carries_little():
+    """As a supply that sags gains 134 on practice-20, where a spring relaxes and 2,483 is left."""
+    little, much = (Weight(134.0, left, 40.0, 50.0) for left in (2483.0, 130.0))
+    assert little.confirmed and not little.believed
+    assert much.believed
