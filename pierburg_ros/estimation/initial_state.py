@@ -86,7 +86,7 @@ class InitialState:
             return upper, 0.0
         velocity = self.rate / per_radian
         lag, play = trail(model)
-        return angle + lag * velocity + 0.5 * play * math.copysign(1.0, velocity) * (velocity != 0.0), velocity
+        return angle + lag * velocity + 0.5 * play * float(np.sign(velocity)), velocity
 
     def _turning(self, model: Model) -> tuple[float, float]:
         """The same where the speed is measured; at rest where noise allows it."""

@@ -69,9 +69,11 @@ class Shooting:
         shown = decoded(model, self.level, quantity)
 
         def shot(more_angle: Signal | float, more_velocity: Signal | float) -> Signal:
-            # what a slow sensor shows moves with the shaft: else it would swing towards it within the lag
-            begun = angle + more_angle, velocity + more_velocity, shown + more_angle
-            return simulate_stretches(model, inputs, time, self.first, *begun)
+            # what a slow sensor shows moves with what it senses: else it would swing towards it within the lag
+            moved = shown + (more_velocity if quantity == "speed" else more_angle)
+            return simulate_stretches(
+                model, inputs, time, self.first, angle + more_angle, velocity + more_velocity, moved
+            )
 
         best, move = shot(0.0, 0.0), np.zeros((2, self.first.size))
         slopes = shot(angle_error, 0.0) - best, shot(0.0, velocity_error) - best

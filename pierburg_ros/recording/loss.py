@@ -100,6 +100,13 @@ def silences(time: Signal, values: Signal, measured_pauses: tuple[Span, ...]) ->
     return merged((*own, *shared))
 
 
+def spans_of(time: NDArray[np.float64], found: NDArray[np.bool_], apart: int = 1) -> list[Span]:
+    """The spans [s] in which samples at `time` [s] are `found`, those up to so many samples `apart` as one."""
+    places = np.flatnonzero(found)
+    groups = np.split(places, np.flatnonzero(np.diff(places) > apart) + 1)
+    return [(float(time[group[0]]), float(time[group[-1]])) for group in groups if group.size]
+
+
 def merged(spans: tuple[Span, ...]) -> tuple[Span, ...]:
     """The same spans in order, those that overlap as one."""
     found: list[Span] = []

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.arrays import Flags
 from pierburg_ros.diagnosis.cleaning.hum import hum
 from pierburg_ros.diagnosis.cleaning.outliers import outliers
 from pierburg_ros.diagnosis.cleaning.saturation import saturated
 from pierburg_ros.estimation.data import Data, Omission
 from pierburg_ros.recording import Recording
-from pierburg_ros.recording.loss import Span
+from pierburg_ros.recording.loss import spans_of
 
 APART = 5
 """Samples from one that is left out to the next within which both belong to one span. Work: each span is an entry."""
@@ -62,7 +62,7 @@ def _without_saturation(given: Cleaned, number: int) -> Cleaned:
         return given
     unit, ends = given.recording.unit, sorted({float(np.min(measured[found])), float(np.max(measured[found]))})
     what = f"the reading stands at the end of its range ({ends[-1]:.4g} {unit})"
-    omissions = tuple(Omission(number, span, what) for span in spans(time, found))
+    omissions = tuple(Omission(number, span, what) for span in spans_of(time, found, APART))
     remark = (
         f"For {np.mean(found) * (time[-1] - time[0]):.3g} s {what}: samples there are left out. Choose a converter or"
         " an amplifier with more range."
@@ -86,10 +86,3 @@ def _added(given: Cleaned, kept: Flags, omissions: tuple[Omission, ...], remark:
     recording = given.recording
     rest = replace(recording, time=recording.time[kept], measured=recording.measured[kept])
     return Cleaned(rest, (*given.omissions, *omissions), (*given.remarks, remark))
-
-
-def spans(time: Signal, found: Flags) -> list[Span]:
-    """The spans [s] in which samples are `found`, those near each other as one."""
-    places = np.flatnonzero(found)
-    groups = np.split(places, np.flatnonzero(np.diff(places) > APART) + 1)
-    return [(float(time[group[0]]), float(time[group[-1]])) for group in groups if group.size]

@@ -17,7 +17,7 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.torque_balance import OUTLYING
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
-from pierburg_ros.recording.loss import Span, merged
+from pierburg_ros.recording.loss import Span, merged, spans_of
 
 TOUCHED = "nothing that acts elsewhere explains it, as if the shaft had been pushed or held"
 """Why a stretch is left out."""
@@ -58,8 +58,8 @@ def _touched(data: Data, nominal: Model) -> dict[int, tuple[Span, ...]]:
             break
     found: dict[int, list[Span]] = {}
     for run, inside in zip(data.runs, _of_runs(data, kept), strict=True):
-        for first, last in _groups(~inside):
-            found.setdefault(run.number, []).append((float(run.time[first]), float(run.time[last])))
+        if spans := spans_of(run.time, ~inside):
+            found.setdefault(run.number, []).extend(spans)
     return {number: merged(tuple(spans)) for number, spans in found.items()}
 
 
@@ -72,13 +72,6 @@ def _inlying(data: Data, model: Model) -> Flags:
         lengths += [part.size for part in parts]
         errors += [rms(part) for part in parts]
     return np.repeat(np.array(errors) <= OUTLYING * np.median(errors), lengths)
-
-
-def _groups(found: Flags) -> list[tuple[int, int]]:
-    """First and last place of each group of successive `found` samples."""
-    places = np.flatnonzero(found)
-    groups = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
-    return [(int(group[0]), int(group[-1])) for group in groups if group.size]
 
 
 def _trained_on(data: Data, kept: Flags) -> Data:

@@ -99,10 +99,12 @@ def _doubtful(stood: Supported, found: Found) -> bool:
     if not (stood.scored.fit.explanation.names and any(run.shooting for run in found.data.runs)):
         return False
     estimator, named, known = Estimator(found.data, stood.nominal), stood.scored.fit, found.recalibrated
+    most = BETTER**2 * found.estimator.validation_misfit(known)
+    if estimator.validation_misfit(named) <= most:
+        return False
     both = Explanation(known.explanation.drifted, named.explanation.variants)
     beside = estimator.fit(both, {**named.values, **{name: known.values[name] for name in both.drifted}})
-    least = min(estimator.validation_misfit(fit) for fit in (named, beside))
-    return least > BETTER**2 * found.estimator.validation_misfit(known)
+    return estimator.validation_misfit(beside) > most
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

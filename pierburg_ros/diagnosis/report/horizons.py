@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from pierburg_ros.diagnosis.evidence.stretches import leading_to, restarted
 from pierburg_ros.diagnosis.schema import Horizon
 from pierburg_ros.estimation.data import Data, rms
@@ -29,9 +31,9 @@ def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
     for after in (*HORIZONS, math.inf):
         stretches = leading_to(data, after, LAST * after) if math.isfinite(after) else restarted(data, after)
         # a recording may be too short for any stretch
-        tested = bool(stretches.runs) and bool(stretches.test.any())
+        samples = stretches.test if stretches.runs else np.zeros(0, dtype=bool)
         errors = [
-            rms(stretches.residual(*model)[stretches.test]) * data.noise if tested else math.nan for model in models
+            rms(stretches.residual(*model)[samples]) * data.noise if samples.any() else math.nan for model in models
         ]
         nominal, recalibrated, final = errors
         found.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))
