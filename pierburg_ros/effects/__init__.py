@@ -60,9 +60,11 @@ _QUANTITIES = {
 }
 ADDED: dict[str, str] = {name: _QUANTITIES[p.added_to] for name, p in DECLARED.items() if p.added_to is not None}
 """What a parameter is added to and may at most cancel, by dotted names."""
+GEARED: dict[str, float] = {name: p.geared for name, p in DECLARED.items() if p.geared is not None}
+"""Most that a parameter may be times the gear ratio, by dotted name."""
 ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not None)
 """The effect of a converter."""
 STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
 """Dotted name of its step."""
 
-__all__ = ["ADDED", "COPPER", "DECLARED", "EFFECT", "EFFECTS", "ROUNDING", "STEP", "Effect", "Parameter"]
+__all__ = ["ADDED", "COPPER", "DECLARED", "EFFECT", "EFFECTS", "GEARED", "ROUNDING", "STEP", "Effect", "Parameter"]

@@ -10,6 +10,9 @@ from pierburg_ros.kernel import kernel
 TURNS = (1.0, 1000.0)
 """Range in which periods per motor revolution are looked for, as far as a recording tells them: a motor has at least
 one, and no motor more than the least common multiple of its poles and slots."""
+FINEST = 50_000.0
+"""Most periods in one turn of the output. Chosen: a motor of 50 periods behind a gear of 1000 to 1, more than is made;
+at no-load speed the simulator has eight steps for each."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
 
@@ -75,6 +78,7 @@ EFFECT = Effect(
             plausible=(1.0, 12.0),
             # a motor has a whole number of teeth
             searched=TURNS,
+            geared=FINEST,
             rhythm=True,
         ),
         Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), measure="1"),

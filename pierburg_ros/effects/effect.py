@@ -121,6 +121,8 @@ class Parameter(parameter.Parameter):
     """Base parameter that it stays below."""
     added_to: Quantity | None = None
     """Quantity that it is added to, and may at most cancel: a negative sum would drive and not resist."""
+    geared: float | None = None
+    """Most that it may be times the gear ratio; None: no bound."""
     stride: float | None = None
     """Largest factor by which one linear step may scale it; None: a step does not scale it."""
     inverse: bool = False
@@ -279,7 +281,8 @@ class Effect:
             ("sensor", sensor, self.sensors),
         ):
             if has not in needed:
-                return f"it needs {what} {' or '.join(needed)}, and the actuator has {what} {has}".replace("_", " ")
+                own = f"no {what}" if has == "none" else f"a {has} {what}"
+                return f"it needs a {' or '.join(needed)} {what}, and the actuator has {own}".replace("_", " ")
         return "it needs stops, and the actuator has none" if self.stops and not stops else ""
 
 

@@ -144,6 +144,13 @@ def rate(p, time):
 
 
 @kernel
+def taking(p, spare):
+    """Time [s] that the load takes at least to change by `spare` [N.m], but for its start and end."""
+    fastest = 2.0 * math.pi * p.frequency * p.amplitude
+    return spare / fastest if fastest > 0.0 else math.inf
+
+
+@kernel
 def next_switch(p, time):
     """The next moment [s] after `time` at which the load starts or ends; infinite where there is none."""
     if time < p.start:

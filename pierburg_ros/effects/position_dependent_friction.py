@@ -1,7 +1,7 @@
 """A place on the travel where it rubs more."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Missing, Parameter, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
@@ -16,9 +16,8 @@ def _starts(missing: Missing) -> Sequence[Start]:
     ]
 
 
-def _width(values: Mapping[str, float]) -> float:
-    """Travel [rad] within which the friction turns no more than once; a spot without width is none."""
-    return values["position_dependent_friction.width"] or math.inf
+FADED = 6.0
+"""Widths from its centre at which a spot is nothing: exp(-36) is the rounding of a number."""
 
 
 EFFECT = Effect(
@@ -65,7 +64,6 @@ EFFECT = Effect(
     typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
     variants=(Variant(("amplitude", "center", "width"), _starts),),
     jumps=True,
-    turns_within=_width,
 )
 
 
@@ -76,6 +74,17 @@ def level(p, angle):
         return 0.0
     distance = (angle - p.center) / p.width
     return p.amplitude * math.exp(-distance * distance)
+
+
+@kernel
+def bends_within(p, angle):
+    """Travel [rad] from `angle` within which the friction turns no more than once: up to the spot, or its width there.
+
+    A spot without amplitude or width is none.
+    """
+    if p.amplitude == 0.0 or p.width == 0.0:
+        return math.inf
+    return max(p.width, abs(angle - p.center) - FADED * p.width)
 
 
 @kernel

@@ -59,6 +59,21 @@ def freedom(p, bristle, level, direction):
 
 
 @kernel
+def bearing(p, bristle, level, direction, velocity):
+    """What bristles bear [N.m], and how that changes: with velocity, along the path, and with the friction level.
+
+    The torque of the lean and the damping [N.m.s/rad] of the part of the motion that goes into it; the sum of both over
+    the travel [N.m/rad], in which the lean grows and its freedom fades; over the level [1].
+    """
+    free = freedom(p, bristle, level, direction)
+    damping = p.damping * free
+    if level <= 0.0:
+        return p.stiffness * bristle, damping, 0.0, 0.0
+    rubbed = p.damping * abs(velocity) / level
+    return p.stiffness * bristle, damping, p.stiffness * free * (1.0 - rubbed), direction * rubbed * (1.0 - free)
+
+
+@kernel
 def moved(p, bristle, level, travel):
     """Bristle deflection [rad] after the shaft has gone `travel` [rad] one way, at constant `level` [N.m].
 

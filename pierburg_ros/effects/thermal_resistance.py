@@ -30,7 +30,7 @@ EFFECT = Effect(
             "winding_heat_capacity": "heat_capacity",
         },
     ),
-    shows_in="grows over the recording with the current drawn",
+    shows_in="the whole recording, the more the longer current is drawn",
     record="long holding at high duty, then a pause",
     parameters=(
         Parameter(

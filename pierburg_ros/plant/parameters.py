@@ -57,8 +57,8 @@ PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
     + [("drive", np.int64), ("sensor", np.int64), ("sensor_span", np.float64)]
-    + [("own", OWN), ("serial", np.int64), ("finest", np.float64)]
-    + [("linear", np.bool_), ("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
+    + [("agility", np.float64), ("own", OWN), ("serial", np.int64), ("finest", np.float64)]
+    + [("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
     align=True,
@@ -83,10 +83,9 @@ def pack(
 
     `drive` and `sensor` are the places of their kinds in `DRIVES` and `SENSORS`, `sensor_span` [rad] is the angle
     between the two Hall end voltages.
-    `plain` says that torques are straight lines of angle and velocity between events, `linear` that nothing but angle
-    and velocity has a memory besides, `finest` [rad] over which travel torques may bend. `creeps` says that states of
-    drive or sensor change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from
-    any other.
+    `agility` is one over the inertia; `plain` says that torques are straight lines of angle and velocity between
+    events, `finest` [rad] over which travel torques may bend throughout. `creeps` says that states of drive or sensor
+    change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
     """
     record = np.zeros(1, PARAMETERS)
     for name in BASE:
@@ -95,13 +94,13 @@ def pack(
         record[effect.id] = tuple(values[f"{effect.id}.{name}"] for name in effect.names)
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
     record["drive"], record["sensor"], record["sensor_span"] = drive, sensor, sensor_span
+    record["agility"] = 1.0 / values["total_inertia"]
     record["own"] = scales.torque, scales.angle, scales.time
     _pack_residual(record, residual)
     present = [effect for effect in EFFECTS if effect.acts(values)]
     creeping = {effect.stage for effect in present if effect.state and effect.stage in _OUTSIDE}
     plain = all(effect.linear for effect in present) and values["gravity_torque"] == 0.0 and residual is None
     record["plain"] = plain
-    record["linear"] = plain and all(effect.memory == "none" for effect in present)
     record["creeps"], record["sensor_moves"] = bool(creeping), "sensor" in creeping
     record["finest"] = _finest(present, values, residual)
     record["serial"] = next(_serial)

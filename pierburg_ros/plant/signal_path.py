@@ -8,7 +8,7 @@ import numpy as np
 
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import elastic, play, rigid
-from pierburg_ros.plant.motion import steady
+from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.state import QUEUE
 from pierburg_ros.plant.torques import drive, sensor
 
@@ -17,27 +17,25 @@ LONGEST = 0.021
 share of the actuator's own time; 2 ms for the valve."""
 FORGOTTEN = 20.0
 """Time constants of the winding after which its current has forgotten the command before, to rounding."""
-EVENTS = 20_000
-"""More events than this in one interval mean that a parameter set cannot be simulated."""
 SUSTAINED = 1e5
 """Events in the actuator's own time that may go on: an event takes up to a microsecond, so that no run takes much
 longer than the motion of the valve itself, which has about 200."""
-BURST = 50 * EVENTS
-"""Events beyond those, as at an impact: about a second of computing."""
+BURST = 1e6
+"""Events beyond those, as at an impact: about a second of computing. More mean that a set cannot be simulated."""
 
 
 @kernel
 def advance(p, s, command, supply_voltage, closed_bridge, duration):
     """Let `command` act for `duration` [s]; `supply_voltage` [V] not a number means the nominal one.
 
-    Changes the state record `s`. A state that is not finite afterwards says that the parameters cannot be
-    simulated; validate before.
+    Changes the state record `s`, and puts the samples that are due in it. A state that is not finite afterwards says
+    that the parameters cannot be simulated; validate before.
     """
     supply = p.supply_voltage if math.isnan(supply_voltage) else supply_voltage
-    if steady.goes_on(p, s, command, supply, closed_bridge, duration):
-        s.time += duration
+    if p.input_delay.delay == 0.0 and s.waiting == 0:
+        _act(p, s, command, supply, closed_bridge, duration)
     else:
-        _proceed(p, s, command, supply, closed_bridge, duration)
+        _act_late(p, s, command, supply, closed_bridge, duration)
 
 
 @kernel
@@ -63,15 +61,6 @@ def recall(p, s, times, command, supply_voltage, closed_bridge):
         s.current -= s.braking * s.motor_velocity / (p.gear_ratio * p.torque_constant)
     for sent in range(arrived + 1, times.size):
         _enqueue(s, times[sent] + p.input_delay.delay, command[sent])
-
-
-@kernel
-def _proceed(p, s, command, supply, closed_bridge, duration):
-    """Let `command` act at once, or late."""
-    if p.input_delay.delay == 0.0 and s.waiting == 0:
-        _act(p, s, command, supply, closed_bridge, duration)
-    else:
-        _act_late(p, s, command, supply, closed_bridge, duration)
 
 
 @kernel
@@ -109,9 +98,9 @@ def _act(p, s, command, supply, closed_bridge, duration):
     if math.isnan(s.angle):
         s.time += duration
         return
-    stretches = 1
-    if p.creeps:
-        stretches = max(math.ceil(duration / (LONGEST * p.own.time) - 1e-6), 1)
+    stretches, longest = 1, LONGEST * p.own.time
+    if p.creeps and duration > longest:
+        stretches = max(math.ceil(duration / longest - 1e-6), 1)
     stretch = duration / stretches
     for _ in range(stretches):
         in_force = command
@@ -123,10 +112,9 @@ def _act(p, s, command, supply, closed_bridge, duration):
 def _mechanics(p, s, duration):
     """Move motor and shaft for `duration` [s], event by event."""
     end = s.time + duration
-    remaining = duration
+    remaining, often = duration, SUSTAINED / p.own.time
     heats = p.thermal_resistance.thermal_resistance != 0.0
-    most = EVENTS if s.events == 0.0 else min(EVENTS, int(BURST - s.events))
-    for event in range(most):
+    while s.events < BURST:
         start, amperes = s.motor_angle, s.current
         if p.gear_compliance.stiffness != 0.0:
             used = elastic.move(p, s, remaining)
@@ -138,9 +126,10 @@ def _mechanics(p, s, duration):
             sensor.follow(p, s, used)
         if heats and used > 0.0:
             drive.warm(p, s, s.motor_angle - start, s.current - amperes, used)
+        stood(p, s, s.time)
+        s.events = max(s.events + 1.0 - used * often, 0.0)
         remaining -= used
         if not remaining > 0.0:
-            s.events = max(s.events + event - SUSTAINED * duration / p.own.time, 0.0)
             s.time = end
             return
     s.angle = s.velocity = math.nan

@@ -13,11 +13,11 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
-from pierburg_ros.plant.motion import steady
+from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import STATE, new_state, place
-from pierburg_ros.plant.torques.sensor import read_all, show, shown
+from pierburg_ros.plant.state import AHEAD, STATE, new_state, place
+from pierburg_ros.plant.torques.sensor import read_all, show
 from pierburg_ros.workers import workers
 
 LONG_BEFORE = 1e9
@@ -163,8 +163,10 @@ def simulate_stretches(
 def _run_into(
     output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
 ) -> None:
-    state = _begun(model, inputs, times[0], initial_angle, initial_velocity)
-    _continue_into(output, model, state, inputs, times)
+    state = np.zeros(1, STATE)
+    run_from(
+        model.record()[0], state[0], *_channels(inputs), times, float(initial_angle), float(initial_velocity), output
+    )
 
 
 def _begun(model: Model, inputs: Inputs, time: float, angle: float, velocity: float) -> np.ndarray:
@@ -208,6 +210,14 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
 
 
 @kernel
+def run_from(p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, output):
+    """`run` from `angle` [rad] with `velocity` [rad/s] at the first sample; `s` is all zeros."""
+    place(p, s, angle, velocity)
+    begin(p, s, input_times, command, supply_voltage, enabled, sample_times[0])
+    run(p, s, input_times, command, supply_voltage, enabled, sample_times, output)
+
+
+@kernel
 def run_stretches(
     p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, lagged, output
 ):
@@ -223,31 +233,42 @@ def run_stretches(
 
 @kernel
 def run(p, s, input_times, command, supply_voltage, enabled, sample_times, output):
-    """Sample the plant at `sample_times` [s] into `output` while the inputs drive it; NaN from where it fails."""
+    """Sample the plant at `sample_times` [s] into `output` while the inputs drive it; NaN from where it fails.
+
+    What creeps beside the mechanics meets them at each sample; without it, samples are read from within the steps.
+    """
     changes = input_times.size
     now = sample_times[0]
     index = np.searchsorted(input_times, now, side="right") - 1
-    sample = 0
-    while sample < sample_times.size:
-        goal = sample_times[sample]
-        while True:
+    put = 0
+    while put < sample_times.size:
+        _look_ahead(s, sample_times, put)
+        last = s.ahead.time[s.ahead.count - 1]
+        stood(p, s, now)
+        while s.sampled < s.ahead.count:
             in_force = command[index] if index >= 0 else 0.0
             supply = supply_voltage[index] if supply_voltage.size > 0 and index >= 0 else p.supply_voltage
             closed = enabled[index] if enabled.size > 0 and index >= 0 else True
             change = input_times[index + 1] if index + 1 < changes else math.inf
-            if now >= goal:
-                break
-            until = min(goal, change)
+            until = min(s.ahead.time[s.sampled] if p.creeps else last, change)
             advance(p, s, in_force, supply, closed, until - now)
             now = until
             while index + 1 < changes and input_times[index + 1] <= now:
                 index += 1
+            if not math.isfinite(s.angle):
+                break
+            stood(p, s, now)
+        read_all(p, s.ahead.shown[: s.sampled], output[put:])
+        put += s.sampled
         if not math.isfinite(s.angle):
-            output[sample:] = np.nan
+            output[put:] = np.nan
             break
-        output[sample] = shown(p, s)
-        sample += 1
-        if steady.holds(p, s, in_force, supply, closed):
-            sample = steady.sampled_on(p, s, sample_times, sample, change, output)
-            now = sample_times[sample - 1]
-    read_all(p, output[:sample])
+    s.ahead.count = 0
+
+
+@kernel
+def _look_ahead(s, sample_times, put):
+    """Have the samples after those `put` read next."""
+    s.ahead.count, s.sampled = min(sample_times.size - put, AHEAD), 0
+    for sample in range(s.ahead.count):
+        s.ahead.time[sample] = sample_times[put + sample]

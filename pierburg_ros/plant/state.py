@@ -14,6 +14,18 @@ from pierburg_ros.plant.torques.sensor import sensed, trail
 QUEUE = 1024
 """Changes of the command that may be under way at once when the input is delayed."""
 
+AHEAD = 1024
+"""Samples that the plant looks ahead: at the last of them a step ends."""
+
+SAMPLES = np.dtype(
+    [
+        ("count", np.int64),
+        ("time", np.float64, (AHEAD,)),  # s
+        ("shown", np.float64, (AHEAD,)),  # rad or rad/s
+    ],
+    align=True,
+)
+
 PIECE = np.dtype(
     [
         ("order", np.int64),  # 2, or 3 behind an inductance; 0: none yet
@@ -50,14 +62,14 @@ STATE = np.dtype(
         ("supply", np.float64),  # V
         ("closed_bridge", np.bool_),
         ("serial", np.int64),  # of the parameters last used
-        ("steady", np.bool_),  # the last step can be repeated: held, or one linear piece
-        ("constant", np.float64),  # rad/s^2, of that piece
         ("voltage", np.float64),  # V, applied to armature and source
         ("resistance", np.float64),  # ohm, of armature and source
         ("drive", np.float64),  # N.m, motor torque at rest, at the shaft
         ("braking", np.float64),  # N.m.s/rad, by the back-EMF
         ("step", np.float64),  # s, internal step that was last accepted
         ("events", np.float64),  # of late, beyond those that may go on
+        ("ahead", SAMPLES),
+        ("sampled", np.int64),  # of the samples ahead that are put
         ("piece", PIECE),  # the linear piece last computed
         ("outside", OUTSIDE),  # the load last computed
         ("waiting", np.int64),  # changes under way

@@ -139,10 +139,14 @@ def test_stretches_begin_where_they_are_told_and_go_on_alike() -> None:
 @pytest.mark.parametrize(
     ("model", "change", "why"),
     (
-        (ROTOR, {"supply_sag.source_resistance": 0.1}, "it needs drive voltage, and the actuator has drive current"),
+        (
+            ROTOR,
+            {"supply_sag.source_resistance": 0.1},
+            "it needs a voltage drive, and the actuator has a current drive",
+        ),
         (ROTOR, {"stop_compliance.stiffness": 10.0}, "it needs stops, and the actuator has none"),
-        (PENDULUM, {"backlash.gap": 0.01}, "it needs drive voltage or current, and the actuator has drive torque"),
-        (PENDULUM, {"nonlinear_spring.cubic_stiffness": 0.1}, "it needs load spring, and the actuator has load pend"),
+        (PENDULUM, {"backlash.gap": 0.01}, "it needs a voltage or current drive, and the actuator has a torque drive"),
+        (PENDULUM, {"nonlinear_spring.cubic_stiffness": 0.1}, "it needs a spring load, and the actuator has a pend"),
     ),
 )
 def test_what_cannot_act_is_refused_with_the_reason(model: Model, change: dict[str, float], why: str) -> None:

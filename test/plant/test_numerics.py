@@ -15,15 +15,10 @@ from pierburg_ros.recording import Channel, Recording
 NOMINAL = Model.nominal(read_actuator("pierburg"))
 TIME = np.arange(251) * 0.002
 STEPS = Inputs(np.arange(10) * 0.05, np.array([1.0, -0.3, 0.24, 0.0, 0.5, -1.0, 1.0, 0.1, 0.24, 0.0]))
-WRINKLED = NOMINAL.with_values(
-    {
-        "position_dependent_friction.amplitude": 5.0,
-        "position_dependent_friction.center": 0.8,
-        "position_dependent_friction.width": 1e-9,
-        "armature_inductance.inductance": 0.1,
-    }
+WRINKLED = NOMINAL.with_residual(
+    {"angle": [0.0, 5e-10, 1e-9], "velocity": [0.0], "torque": [[0.0], [0.01], [0.0]], "period": 1e-9}
 )
-"""A friction that bends over a nanoradian, for which the simulator's steps are as short."""
+"""A torque that bends in every nanoradian, for which the simulator's steps are as short."""
 
 
 def models() -> list[Model]:
@@ -87,6 +82,40 @@ def test_a_step_that_leads_beyond_all_numbers_is_taken_shorter():
     for angle in np.linspace(0.1, 1.4, 8):
         output = simulate(NOMINAL.with_values(hill), STEPS, TIME[:50], angle)
         assert np.all((output >= 0.42) & (output <= 4.52))
+
+
+def test_a_tight_spot_as_narrow_as_one_likes_is_crossed():
+    """A micron of the travel is passed in steps of its own; the travel before and after it is not."""
+    spot = {"position_dependent_friction.amplitude": 5.0, "position_dependent_friction.center": 0.8}
+    narrow = NOMINAL.with_values({**spot, "position_dependent_friction.width": 1e-9})
+    assert np.abs(simulate(narrow, STEPS, TIME) - simulate(NOMINAL, STEPS, TIME)).max() < 1e-4
+
+
+def test_samples_do_not_change_the_motion_that_they_are_read_from():
+    """Elastic and parted teeth, bristles, a winding, a ripple: read every 2 ms and at the changes of the duty alone."""
+    for effects in (
+        {"gear_compliance.stiffness": 12.0, "gear_compliance.damping": 0.01, "presliding.stiffness": 15.0},
+        {"backlash.gap": 0.2, "backlash.motor_friction_share": 0.4, "armature_inductance.inductance": 1e-5},
+        {"presliding.stiffness": 15.0, "presliding.damping": 0.02, "nonlinear_spring.cubic_stiffness": 0.05},
+        {"cogging_torque.amplitude": 0.02, "cogging_torque.periods_per_motor_revolution": 3.0},
+        {"stop_compliance.stiffness": 30.0, "stop_compliance.damping": 0.01},
+    ):
+        model = NOMINAL.with_values(effects)
+        dense, sparse = simulate(model, STEPS, TIME), simulate(model, STEPS, TIME[::25])
+        assert np.abs(dense[::25] - sparse).max() < 1e-4
+
+
+def test_a_finer_ripple_than_any_motor_has_is_refused_in_one_line():
+    with pytest.raises(
+        InputError, match=r"is 900 and gear_ratio 700, 630000 in one turn of the output; expected 50000"
+    ):
+        NOMINAL.with_values(
+            {
+                "cogging_torque.amplitude": 0.01,
+                "cogging_torque.periods_per_motor_revolution": 900.0,
+                "gear_ratio": 700.0,
+            }
+        )
 
 
 def test_a_comparison_with_such_a_model_says_so_in_one_line():

@@ -17,6 +17,7 @@ from pierburg_ros.plant.motion.events import (
     CORRECTED,
     EVEN,
     beyond,
+    finest,
     lower,
     motor_onset,
     next_step,
@@ -24,6 +25,7 @@ from pierburg_ros.plant.motion.events import (
     shortest,
     upper,
 )
+from pierburg_ros.plant.motion.watch import due, put
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.friction import level
 
@@ -34,9 +36,9 @@ Standing or sliding: teeth that damp a sliding shaft alone would send it back at
 
 
 class Sides(NamedTuple):
-    """Where a step has brought the two sides: travel [rad], velocity [rad/s], current [A], teeth [N.m], error [rad].
+    """Where a step has brought the two sides: travel [rad], velocity [rad/s], current [A], teeth [N.m].
 
-    And how far their bristles lean [rad].
+    And what it missed of the resistance [N.m], by which angle it may be wrong, and how far their bristles lean [rad].
     """
 
     motor_travel: float
@@ -45,6 +47,7 @@ class Sides(NamedTuple):
     travel: float
     velocity: float
     teeth: float
+    missed: float
     wrong: float
     bristle: float
     motor_bristle: float
@@ -53,7 +56,8 @@ class Sides(NamedTuple):
 class Grip(NamedTuple):
     """What holds the shaft: the teeth's deflection [rad], their stiffness and damping, and the shaft's own resistance.
 
-    N.m/rad and N.m.s/rad, 0 where the teeth do not touch; N.m at rest, N.m/rad, N.m.s/rad.
+    N.m/rad and N.m.s/rad, 0 where the teeth do not touch; N.m at rest, N.m/rad, N.m.s/rad; with its friction level
+    [N.m]. `mobility` is its velocity for each N.m more [rad/(N.m.s)].
     """
 
     deflection: float
@@ -62,6 +66,8 @@ class Grip(NamedTuple):
     resisting: float
     bending: float
     viscous: float
+    friction: float
+    mobility: float
 
 
 @kernel
@@ -73,18 +79,35 @@ def _deflection(p, twist):
 
 
 @kernel
-def _grip(p, s, twist, rate, angle, velocity, bristle, time):
+def _grip(p, s, twist, rate, angle, velocity, bristle, time, motor):
     """What holds the shaft at `twist` [rad] growing with `rate` [rad/s]; across a play the teeth do not pull."""
     gear = p.gear_compliance
     deflection = _deflection(p, twist)
-    resisting = bending = viscous = 0.0
+    resisting = bending = viscous = friction = 0.0
     if s.direction != 0.0:
-        resisting, bending, viscous = shaft.resistance(p, s, angle, velocity, bristle, time)
+        resisting, bending, viscous, friction = shaft.resistance(p, s, angle, velocity, bristle, time, motor)
     pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
     if p.backlash.gap > 0.0 and not pushes:
-        return Grip(deflection, 0.0, 0.0, resisting, bending, max(viscous, shaft.least_damping(p)))
+        viscous = max(viscous, shaft.least_damping(p))
+        return Grip(deflection, 0.0, 0.0, resisting, bending, viscous, friction, 1.0 / viscous)
     damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness)
-    return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous)
+    return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous, friction, 1.0 / (damping + viscous))
+
+
+@kernel
+def _given_way(grip, more):
+    """The grip after the shaft has gone a little `more` [rad]."""
+    deflection, resisting = grip.deflection - more, grip.resisting + grip.bending * more
+    return Grip(
+        deflection,
+        grip.stiffness,
+        grip.damping,
+        resisting,
+        grip.bending,
+        grip.viscous,
+        grip.friction,
+        grip.mobility,
+    )
 
 
 @kernel
@@ -92,8 +115,7 @@ def _velocity(s, grip, motor_velocity):
     """Velocity of the shaft [rad/s]: where it slides its torques balance at once."""
     if s.direction == 0.0:
         return 0.0
-    push = grip.stiffness * grip.deflection + grip.damping * motor_velocity - grip.resisting
-    return push / (grip.damping + grip.viscous)
+    return grip.mobility * (grip.stiffness * grip.deflection + grip.damping * motor_velocity - grip.resisting)
 
 
 @kernel
@@ -108,7 +130,7 @@ def _felt(s, grip):
     if s.direction == 0.0 or grip.stiffness == 0.0:
         return grip.stiffness, grip.damping
     stiffness = grip.stiffness * grip.bending / (grip.stiffness + grip.bending)
-    return stiffness, grip.damping * grip.viscous / (grip.damping + grip.viscous)
+    return stiffness, grip.damping * grip.viscous * grip.mobility
 
 
 @kernel
@@ -146,7 +168,7 @@ def grown(reach, faded):
 def _astray(grip, rate, step, missed):
     """Angle [rad] by which the shaft may be wrong that has `missed` this resistance [N.m] at the end."""
     memory = min(step, 1.0 / rate) if rate > 0.0 else step
-    return 0.5 * abs(missed) / (grip.damping + grip.viscous) * memory
+    return 0.5 * abs(missed) * grip.mobility * memory
 
 
 @kernel
@@ -173,7 +195,9 @@ def _motor_bristle(p, s, travel):
 def _line(p, s):
     """The grip on the shaft now, and the net torque on the motor as a straight line, shaft following."""
     twist = s.motor_angle - s.angle
-    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, s.velocity, s.presliding.bristle, s.time)
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    rate, bristle = s.motor_velocity - s.velocity, s.presliding.bristle
+    grip = _grip(p, s, twist, rate, s.angle, s.velocity, bristle, s.time, motor)
     free = _motor(p, s, s.motor_angle, s.motor_velocity, s.time, s.current, s.presliding.motor_bristle)
     stiffness, damping = _felt(s, grip)
     force = free.force - _teeth(grip, s.motor_velocity, _velocity(s, grip, s.motor_velocity))
@@ -196,21 +220,21 @@ def _trial(p, s, grip, line, step):
     travel, ended, amperes = _motor_piece(p, s, line, step)
     rate, faded = 0.0, 0.0
     if s.direction != 0.0:
-        rate = (grip.stiffness + grip.bending) / (grip.damping + grip.viscous)
+        rate = (grip.stiffness + grip.bending) * grip.mobility
         faded = math.expm1(-rate * step)
     moved, velocity = _follow(s, grip, step, travel / step, rate, faded)
     time = s.time + step
-    bristle = shaft.bristle_after(p, s, moved) if s.direction != 0.0 else s.presliding.bristle
+    bristle = shaft.bristle_after(p, s, grip.friction, moved) if s.direction != 0.0 else s.presliding.bristle
     twist = s.motor_angle + travel - s.angle - moved
-    reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time)
+    motor = torque_at(p, s, ended, amperes)
+    reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time, motor)
     missed = 0.0
     if s.direction != 0.0:
         missed = _missed(grip, reached, moved, velocity)
-        more = -missed / (grip.damping + grip.viscous) * step * grown(rate * step, faded)
+        more = -missed * grip.mobility * step * grown(rate * step, faded)
         moved += more
-        bristle = shaft.bristle_after(p, s, moved)
-        deflection, resisting = reached.deflection - more, reached.resisting + reached.bending * more
-        reached = Grip(deflection, reached.stiffness, reached.damping, resisting, reached.bending, reached.viscous)
+        bristle = shaft.leaned(p, s, reached.friction, bristle, more)
+        reached = _given_way(reached, more)
     velocity = _velocity(s, reached, ended)
     teeth = _teeth(reached, ended, velocity)
     motor_bristle = _motor_bristle(p, s, travel)
@@ -221,7 +245,22 @@ def _trial(p, s, grip, line, step):
         wrong = error(p, s, line, step, actual - expected)
     if s.direction != 0.0:
         wrong += _astray(grip, rate, step, missed) / CORRECTED
-    return Sides(travel, ended, amperes, moved, velocity, teeth, wrong, bristle, motor_bristle)
+    return Sides(travel, ended, amperes, moved, velocity, teeth, missed, wrong, bristle, motor_bristle)
+
+
+@kernel
+def _between(p, s, grip, line, elapsed, step, missed):
+    """Angle [rad] and velocity [rad/s] of the shaft when some of a step has `elapsed` [s] that missed so much [N.m]."""
+    if s.direction == 0.0:
+        return s.angle, 0.0
+    travel, now, _ = _motor_piece(p, s, line, elapsed)
+    rate = (grip.stiffness + grip.bending) * grip.mobility
+    faded = math.expm1(-rate * elapsed)
+    moved, _ = _follow(s, grip, elapsed, travel / elapsed, rate, faded)
+    missed *= (elapsed / step) ** 2
+    moved -= missed * grip.mobility * elapsed * grown(rate * elapsed, faded)
+    push = grip.stiffness * (grip.deflection + travel - moved) + grip.damping * now
+    return s.angle + moved, grip.mobility * (push - grip.resisting - grip.bending * moved - missed)
 
 
 @kernel
@@ -247,15 +286,22 @@ def move(p, s, remaining):
         step = max(min(step, EVEN / p.external_load.frequency), shortest(p))
     while True:
         sides = _trial(p, s, grip, line, step)
-        excess = max(beyond(p, sides.wrong, sides.motor_travel), abs(sides.motor_travel) / p.finest)
+        excess = max(
+            beyond(p, sides.wrong, sides.motor_travel),
+            abs(sides.motor_travel) / finest(p, s.motor_angle),
+            abs(sides.travel) / finest(p, s.angle),
+        )
         if not excess > 1.0 or step <= shortest(p):
             break
-        step = shorter(p, step, excess)
+        step = max(shorter(step, excess), shortest(p))
     s.step = next_step(s.step, step, remaining, excess)
     breaks = step > shortest(p) and _breaks(p, s, sides, step)
     if breaks:
         step = _breaking_time(p, s, grip, line, step)
         sides = _trial(p, s, grip, line, step)
+    while due(p, s, s.time + step):
+        angle, velocity = _between(p, s, grip, line, s.ahead.time[s.sampled] - s.time, step, sides.missed)
+        put(p, s, angle, velocity)
     _take(p, s, sides, step, breaks)
     return step
 
@@ -266,7 +312,9 @@ def _set_directions(p, s):
     if s.direction != 0.0 and not _motor_stands(p, s):
         return
     twist = s.motor_angle - s.angle
-    grip = _grip(p, s, twist, s.motor_velocity - s.velocity, s.angle, 0.0, s.presliding.bristle, s.time)
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    rate, bristle = s.motor_velocity - s.velocity, s.presliding.bristle
+    grip = _grip(p, s, twist, rate, s.angle, 0.0, bristle, s.time, motor)
     if s.direction == 0.0:
         s.direction = shaft.onset(p, s, _teeth(grip, s.motor_velocity, 0.0), s.angle, s.time)
     if _motor_stands(p, s):

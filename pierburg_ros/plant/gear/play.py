@@ -11,7 +11,7 @@ import math
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
 from pierburg_ros.plant.gear.rigid import joined, slide_joined
-from pierburg_ros.plant.motion.body import PARTED, balance, piece
+from pierburg_ros.plant.motion.body import PARTED, balance, piece, torque_at
 from pierburg_ros.plant.motion.events import (
     even,
     hold,
@@ -24,6 +24,7 @@ from pierburg_ros.plant.motion.events import (
     standing_time,
     upper,
 )
+from pierburg_ros.plant.motion.watch import due, put
 from pierburg_ros.plant.torques.drive import relaxed_current
 
 TURNS = 1e-4
@@ -37,18 +38,19 @@ def move(p, s, remaining):
     if s.flank == 0:
         return _move_parted(p, s, remaining)
     if s.direction == 0.0:
-        leaving = _leaving(p, s)
+        leaving = _leaving(p, s, s.current)
         if leaving != 0.0:
             _part(s, leaving)
             return 0.0
         s.direction = onset(p, s, s.time, s.current)
         if s.direction == 0.0:
-            return hold(p, s, remaining)
-    if _torn(p, s, s.angle, s.velocity, s.presliding.bristle, s.time):
+            return hold(p, s, _staying(p, s, remaining))
+    pull, friction = _pull(p, s, s.angle, s.velocity, s.current, s.presliding.bristle, s.time)
+    if pull * s.flank < 0.0:
         _part(s, s.direction)
         return 0.0
     line = joined(p, s)
-    return slide_joined(p, s, line, _tearing_time(p, s, line, remaining))
+    return slide_joined(p, s, line, _tearing_time(p, s, line, friction, remaining))
 
 
 @kernel
@@ -59,31 +61,47 @@ def _part(s, direction):
 
 
 @kernel
-def _leaving(p, s):
+def _leaving(p, s, amperes):
     """Direction in which a standing motor leaves its flank while the shaft stays; 0 if it does not."""
-    direction = motor_onset(p, s, 0.0, s.current)
+    direction = motor_onset(p, s, 0.0, amperes)
     if direction * s.flank < 0.0 and shaft.onset(p, s, 0.0, s.angle, s.time) == 0.0:
         return direction
     return 0.0
 
 
 @kernel
-def _torn(p, s, angle, velocity, bristle, time):
-    """Whether the sliding shaft would have to be pulled by a flank that can only push."""
-    torque, _, viscous = shaft.resistance(p, s, angle, velocity, bristle, time)
-    return (torque + viscous * velocity) * s.flank < 0.0
+def _staying(p, s, remaining):
+    """How much of `remaining` [s] a standing motor stays on its flank: its current relaxes one way."""
+    if p.armature_inductance.inductance == 0.0 or _leaving(p, s, relaxed_current(p, s, remaining)) == 0.0:
+        return remaining
+    early, late = 0.0, remaining
+    for _ in range(40):
+        middle = 0.5 * (early + late)
+        if _leaving(p, s, relaxed_current(p, s, middle)) == 0.0:
+            early = middle
+        else:
+            late = middle
+    return late
 
 
 @kernel
-def _tearing_time(p, s, line, remaining):
+def _pull(p, s, angle, velocity, amperes, bristle, time):
+    """What a flank, which can only push, bears for the shaft to slide with the motor, and the friction level [N.m]."""
+    motor = torque_at(p, s, velocity, amperes)
+    torque, _, viscous, friction = shaft.resistance(p, s, angle, velocity, bristle, time, motor)
+    return torque + viscous * velocity, friction
+
+
+@kernel
+def _tearing_time(p, s, line, friction, remaining):
     """How long [s] the flanks stay together: not longer than one internal step is good for."""
     late = remaining if p.plain else min(remaining, max(s.step, shortest(p)))
-    if not _tears(p, s, line, late):
+    if not _tears(p, s, line, friction, late):
         return late
     early = 0.0
     while late - early > shortest(p):
         middle = 0.5 * (early + late)
-        if _tears(p, s, line, middle):
+        if _tears(p, s, line, friction, middle):
             late = middle
         else:
             early = middle
@@ -91,10 +109,10 @@ def _tearing_time(p, s, line, remaining):
 
 
 @kernel
-def _tears(p, s, line, step):
-    travel, velocity, _ = piece(p, s, step, s.velocity, line)
-    bristle = shaft.bristle_after(p, s, travel)
-    return _torn(p, s, s.angle + travel, velocity, bristle, s.time + step)
+def _tears(p, s, line, friction, step):
+    travel, velocity, amperes = piece(p, s, step, s.velocity, line)
+    bristle = shaft.bristle_after(p, s, friction, travel)
+    return _pull(p, s, s.angle + travel, velocity, amperes, bristle, s.time + step)[0] * s.flank < 0.0
 
 
 @kernel
@@ -148,6 +166,7 @@ def _turn_motor(p, s, low, high, remaining):
 @kernel
 def _take_turns(p, s, step):
     """Motor and shaft on their own for a short `step` [s]; the shaft gives way to the flanks. Gives the time used."""
+    began, angle = s.time, s.angle
     if s.motor_direction == 0.0:
         used = _wait(p, s, step)
     else:
@@ -158,6 +177,8 @@ def _take_turns(p, s, step):
         _bring_together(p, s, s.motor_angle, 1)
     elif apart >= p.backlash.gap:
         _bring_together(p, s, s.motor_angle + p.backlash.gap, -1)
+    while due(p, s, s.time):
+        put(p, s, angle + (s.angle - angle) * (s.ahead.time[s.sampled] - began) / used, s.velocity)
     return used
 
 

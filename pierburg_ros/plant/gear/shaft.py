@@ -41,35 +41,44 @@ def onset(p, s, tooth, angle, time):
 
 
 @kernel
-def resistance(p, s, angle, velocity, bristle, time):
-    """What resists the sliding shaft: torque at rest [N.m], stiffness [N.m/rad], damping [N.m.s/rad]."""
+def resistance(p, s, angle, velocity, bristle, time, motor):
+    """What resists the sliding shaft: torque at rest [N.m], stiffness [N.m/rad], damping [N.m.s/rad], friction level.
+
+    Under the `motor` torque [N.m]; how friction falls with velocity is not followed within a step.
+    """
     own = own_share(p)
     torque, stiffness, by_velocity, _ = load(p, angle, velocity, outside(p, s, time))
-    motor = torque_at(p, s, s.motor_velocity, s.current)
     friction, _, by_angle, _ = level(p, s.direction, velocity, angle, motor)
     resisting = own * damping(p, s.direction) + by_velocity
     torque -= by_velocity * velocity
     if p.presliding.stiffness != 0.0:
         free = own * presliding.freedom(p.presliding, bristle, friction, s.direction)
         torque += own * p.presliding.stiffness * bristle
-        return torque, stiffness + p.presliding.stiffness * free, resisting + p.presliding.damping * free
-    return torque + own * s.direction * friction, stiffness + own * s.direction * by_angle, resisting
+        return torque, stiffness + p.presliding.stiffness * free, resisting + p.presliding.damping * free, friction
+    return torque + own * s.direction * friction, stiffness + own * s.direction * by_angle, resisting, friction
 
 
 @kernel
-def bristle_after(p, s, travel):
-    """Bristle deflection [rad] after the shaft has gone `travel` [rad]."""
+def bristle_after(p, s, friction, travel):
+    """Bristle deflection [rad] after the shaft has gone `travel` [rad] against this `friction` [N.m]."""
     if p.presliding.stiffness == 0.0:
         return 0.0
-    motor = torque_at(p, s, s.motor_velocity, s.current)
-    friction = level(p, s.direction, s.velocity, s.angle, motor)[0]
     return presliding.moved(p.presliding, s.presliding.bristle, friction, travel)
+
+
+@kernel
+def leaned(p, s, friction, bristle, travel):
+    """Deflection [rad] of a `bristle` after a very short `travel` [rad] against this `friction` [N.m]."""
+    if p.presliding.stiffness == 0.0:
+        return 0.0
+    return bristle + presliding.freedom(p.presliding, bristle, friction, s.direction) * travel
 
 
 @kernel
 def drift(p, s, step):
     """Let the shaft go on its own for a short `step` [s], up to a rigid stop; it rests where nothing drives it on."""
-    torque, stiffness, viscous = resistance(p, s, s.angle, s.velocity, s.presliding.bristle, s.time)
+    motor = torque_at(p, s, s.motor_velocity, s.current)
+    torque, stiffness, viscous, friction = resistance(p, s, s.angle, s.velocity, s.presliding.bristle, s.time, motor)
     slack = max(viscous, least_damping(p))
     velocity = -torque / slack
     if velocity * s.direction <= 0.0:
@@ -77,7 +86,7 @@ def drift(p, s, step):
         return
     rate = stiffness / slack
     travel = velocity * (step if abs(rate) * step < 1e-9 else -math.expm1(-rate * step) / rate)
-    s.presliding.bristle = bristle_after(p, s, travel)
+    s.presliding.bristle = bristle_after(p, s, friction, travel)
     s.velocity = velocity
     s.angle += travel
     if s.angle <= lower(p) or s.angle >= upper(p):

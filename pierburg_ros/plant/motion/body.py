@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
-from pierburg_ros.plant.motion.linear_piece import responses, turning_time
-from pierburg_ros.plant.motion.steady import ALIKE
+from pierburg_ros.plant.motion.linear_piece import alike, responses, turning_time
 from pierburg_ros.plant.motion.third_order import third_responses
+from pierburg_ros.plant.motion.watch import due, put, slid
 from pierburg_ros.plant.torques.drive import motor_torque
 from pierburg_ros.plant.torques.friction import damping, level
-from pierburg_ros.plant.torques.load import load, outside, ripple
+from pierburg_ros.plant.torques.load import load, outside, ripple, ripple_slope
 
 JOINED = 0
 """Motor and shaft move as one."""
@@ -79,15 +79,15 @@ def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
         pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, outside(p, s, time))
     if p.cogging_torque.amplitude != 0.0:
         lead = s.motor_angle - s.angle if kind == JOINED else 0.0
-        torque, slope = ripple(p, angle + lead)
-        pulled += torque
-        stiffness += slope
+        pulled += ripple(p, angle + lead)
+        stiffness += ripple_slope(p, angle + lead)
     if p.presliding.stiffness != 0.0:
-        free = part * presliding.freedom(p.presliding, bristle, friction, direction)
-        viscous += p.presliding.damping * free
-        stiffness += p.presliding.stiffness * free
-        force = motor - pulled - part * p.presliding.stiffness * bristle - viscous * velocity
-        return Line(force, electrical_slope(p, s) + viscous + by_load_velocity, stiffness, -rate, 1.0)
+        held, viscous_too, by_path, by_level = presliding.bearing(p.presliding, bristle, friction, direction, velocity)
+        force = motor - pulled - part * held - (part * viscous_too + viscous) * velocity
+        viscous += part * (viscous_too + by_level * by_velocity)
+        stiffness += part * (by_path + by_level * by_angle)
+        gain = 1.0 - part * by_level * by_torque
+        return Line(force, electrical_slope(p, s) * gain + viscous + by_load_velocity, stiffness, -rate, gain)
     gain = 1.0 - direction * part * by_torque
     force = motor - pulled - part * direction * friction - viscous * velocity
     slope = electrical_slope(p, s) * gain + by_load_velocity + viscous + part * direction * by_velocity
@@ -99,10 +99,9 @@ def piece(p, s, step, velocity, line):
     """Travel [rad], velocity [rad/s] and current [A] after `step` [s] on the straight line."""
     if p.armature_inductance.inductance != 0.0 and s.closed_bridge:
         return _inductive_piece(p, s, step, velocity, line)
-    agility = 1.0 / p.total_inertia
-    slope, impulse, integral, twice, _ = _second(s, line.slope * agility, line.stiffness * agility, step)
-    push = (line.force + line.slope * velocity) * agility
-    ramp = line.rate * agility
+    slope, impulse, integral, twice, _ = _second(s, line.slope * p.agility, line.stiffness * p.agility, step)
+    push = (line.force + line.slope * velocity) * p.agility
+    ramp = line.rate * p.agility
     travel = velocity * impulse + push * integral + ramp * twice
     return travel, velocity * slope + push * impulse + ramp * integral, s.current
 
@@ -111,7 +110,7 @@ def piece(p, s, step, velocity, line):
 def _second(s, damping, stiffness, step):
     """Responses of x'' + damping x' + stiffness x, from the state where they are those of the last step."""
     piece = s.piece
-    if piece.order != 2 or piece.damping != damping or piece.stiffness != stiffness or _differs(step, piece.step):
+    if piece.order != 2 or piece.damping != damping or piece.stiffness != stiffness or not alike(step, piece.step):
         piece.order, piece.damping, piece.stiffness, piece.step = 2, damping, stiffness, step
         slope, impulse, integral, twice, thrice = responses(damping, stiffness, step)
         piece.slope, piece.impulse, piece.integral = slope, impulse, integral
@@ -124,17 +123,12 @@ def _third(s, damping, stiffness, pull, step):
     """Responses of x''' + damping x'' + stiffness x' + pull x, from the state likewise."""
     piece = s.piece
     same = piece.order == 3 and piece.damping == damping and piece.stiffness == stiffness and piece.pull == pull
-    if not same or _differs(step, piece.step):
+    if not same or not alike(step, piece.step):
         piece.order, piece.damping, piece.stiffness, piece.pull, piece.step = 3, damping, stiffness, pull, step
         bend, slope, value, once, twice = third_responses(damping, stiffness, pull, step)
         piece.slope, piece.impulse, piece.integral = bend, slope, value
         piece.twice, piece.thrice = once, twice
     return piece.slope, piece.impulse, piece.integral, piece.twice, piece.thrice
-
-
-@kernel
-def _differs(step, other):
-    return abs(step - other) > ALIKE * step
 
 
 @kernel
@@ -145,11 +139,11 @@ def _inductive(p, s, velocity, line):
     """
     both = p.total_inertia * p.armature_inductance.inductance
     constant = p.gear_ratio * p.torque_constant
-    damping = s.resistance / p.armature_inductance.inductance + line.slope / p.total_inertia
+    damping = s.resistance / p.armature_inductance.inductance + line.slope * p.agility
     stiffness = (s.resistance * line.slope + line.gain * constant * constant) / both
-    stiffness += line.stiffness / p.total_inertia
+    stiffness += line.stiffness * p.agility
     rest = line.gain * constant * s.current - line.slope * velocity - line.force
-    push = (line.gain * constant * s.voltage - s.resistance * rest) / both + line.rate / p.total_inertia
+    push = (line.gain * constant * s.voltage - s.resistance * rest) / both + line.rate * p.agility
     return damping, stiffness, s.resistance * line.stiffness / both, push, s.resistance * line.rate / both
 
 
@@ -158,7 +152,7 @@ def _inductive_piece(p, s, step, velocity, line):
     """The same with a current that lags: one piece of third order."""
     damping, stiffness, pull, push, ramp = _inductive(p, s, velocity, line)
     bend, slope, value, once, twice = _third(s, damping, stiffness, pull, step)
-    started = line.force / p.total_inertia
+    started = line.force * p.agility
     travel = velocity * (slope + damping * value) + started * value + push * once + ramp * twice
     ended = velocity * (bend + damping * slope) + started * slope + push * value + ramp * once
     swinging = -velocity * (stiffness * slope + pull * value)
@@ -170,12 +164,12 @@ def _inductive_piece(p, s, step, velocity, line):
 @kernel
 def turn(p, s, velocity, line):
     """Longest step [s] within which the velocity on the straight line passes zero once at most."""
-    acceleration = line.force / p.total_inertia
+    acceleration = line.force * p.agility
     if p.armature_inductance.inductance == 0.0 or not s.closed_bridge:
-        damping, stiffness = line.slope / p.total_inertia, line.stiffness / p.total_inertia
+        damping, stiffness = line.slope * p.agility, line.stiffness * p.agility
         if stiffness <= 0.25 * damping * damping:
             return math.inf
-        jerk = line.rate / p.total_inertia - damping * acceleration - stiffness * velocity
+        jerk = line.rate * p.agility - damping * acceleration - stiffness * velocity
         return _turn(p, damping, stiffness, acceleration, jerk)
     damping, stiffness, _, push, _ = _inductive(p, s, velocity, line)
     square = stiffness - 0.25 * damping * damping
@@ -206,14 +200,26 @@ def after(p, line, step, travel, change, amperes):
 
 
 @kernel
-def correction(p, s, step, missed):
-    """Travel [rad] and velocity [rad/s] more, for a torque that has come up to `missed` [N.m] over the last `step` [s].
+def curvature(p, step, missed):
+    """How the push bends [rad/s^4] that has come up to `missed` [N.m] over a `step` [s].
 
     What a touching line misses grows with the square of time (the second stage of exprb32, Hochbruck, Ostermann, Acta
     Numerica 19 (2010) 209-286).
     """
-    curvature = 2.0 * missed / (p.total_inertia * step * step)
-    return curvature * s.piece.thrice, curvature * s.piece.twice
+    return 2.0 * missed * p.agility / (step * step)
+
+
+@kernel
+def seen(p, s, angle, velocity, line, bend, step):
+    """Put the samples within a `step` [s] on the straight line, which bends by `bend` [rad/s^4]."""
+    if p.armature_inductance.inductance == 0.0 or not s.closed_bridge:
+        push = (line.force + line.slope * velocity) * p.agility
+        linear = line.slope * p.agility, line.stiffness * p.agility, push, line.rate * p.agility, bend
+        slid(p, s, linear, angle, velocity, step)
+        return
+    while due(p, s, s.time + step):
+        travel, now, _ = piece(p, s, s.ahead.time[s.sampled] - s.time, velocity, line)
+        put(p, s, angle + travel, now)
 
 
 @kernel
@@ -222,7 +228,7 @@ def error(p, s, line, step, missed):
     resisting = line.slope
     if p.armature_inductance.inductance != 0.0:
         resisting += line.gain * s.braking
-    response = step / p.total_inertia
+    response = step * p.agility
     if abs(resisting) * response > 1.0:
         response = 1.0 / abs(resisting)
     return 0.5 * abs(missed) * response * step

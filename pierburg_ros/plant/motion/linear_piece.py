@@ -12,8 +12,23 @@ from pierburg_ros.kernel import kernel
 
 JUST_TURNED = 1e-2
 """A turn nearer than this [rad of the rotation] is the one that has just been passed."""
+ALIKE = 1e-9
+"""Steps whose lengths differ by less than this share count as one; time stamps are not exact multiples."""
 SLOW = 1e-3
-"""Below this product of rate and step the power series is the more accurate form."""
+"""Below this product of rate and step a few terms of the power series are exact to 1e-8."""
+ROOTS = 1e-8
+"""Square of half the distance of the two roots, in steps, from which they count as two."""
+SHORT, SOFT = 0.2, 1e-2
+"""Damping and stiffness, in steps, below which the integrals come from power series: to divide by them, or by the
+difference of roots that are nearly one, costs their digits."""
+TERMS = 12
+"""Terms of those series. Derived: the first that is left out is then below 0.25^12 / 15!, 5e-20."""
+
+
+@kernel
+def alike(step, other):
+    """Whether two steps [s] count as one."""
+    return abs(step - other) <= ALIKE * step
 
 
 @kernel
@@ -25,10 +40,12 @@ def responses(damping, stiffness, step):
     """
     if abs(damping) * step < SLOW and abs(stiffness) * step * step < SLOW:
         return _by_series(damping, stiffness, step)
+    if abs(damping) * step < SHORT and abs(stiffness) * step * step < SOFT:
+        return _by_long_series(damping, stiffness, step)
     discriminant = 0.25 * damping * damping - stiffness
-    if discriminant * step * step > 1e-8:
+    if discriminant * step * step > ROOTS:
         return _by_real_roots(damping, stiffness, step, math.sqrt(discriminant))
-    return _by_rotation(damping, stiffness, step, max(math.sqrt(max(-discriminant, 0.0)), 1e-4 / step))
+    return _by_rotation(damping, stiffness, step, -discriminant)
 
 
 @kernel
@@ -41,6 +58,22 @@ def _by_series(damping, stiffness, step):
     integral = step * step * (0.5 + step * (first / 6.0 + step * second / 24.0))
     twice = step * step * step * (1.0 / 6.0 + step * (first / 24.0 + step * second / 120.0))
     return slope, impulse, integral, twice, step**4 * (1.0 / 24.0 + step * first / 120.0)
+
+
+@kernel
+def _by_long_series(damping, stiffness, step):
+    """The last two integrals term by term; the others follow from them without a division."""
+    before, term = 0.0, 1.0
+    twice = thrice = 0.0
+    power = step * step / 2.0
+    for order in range(3, 3 + TERMS):
+        power *= step / order
+        twice += term * power
+        thrice += term * power * step / (order + 1)
+        before, term = term, -damping * term - stiffness * before
+    integral = 0.5 * step * step - damping * twice - stiffness * thrice
+    impulse = step - damping * integral - stiffness * twice
+    return 1.0 - damping * impulse - stiffness * integral, impulse, integral, twice, thrice
 
 
 @kernel
@@ -72,18 +105,24 @@ def _integrals(root, step, grown):
         second = (first - step) * period
         return first, second, (second - 0.5 * step * step) * period
     square = step * step
-    third = square * step * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach * (1.0 / 120.0 + reach / 720.0)))
+    third = square * step * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach * (1.0 / 120.0 + reach * (1.0 / 720.0))))
     if abs(reach) >= 1e-3:
         return first, (first - step) * period, third
     return first, square * (0.5 + reach * (1.0 / 6.0 + reach * (1.0 / 24.0 + reach / 120.0))), third
 
 
 @kernel
-def _by_rotation(damping, stiffness, step, frequency):
+def _by_rotation(damping, stiffness, step, square):
+    """Roots that are one, or a pair whose imaginary part has this `square` [1/s^2]."""
     decay = math.exp(-0.5 * damping * step)
-    sine, cosine = math.sin(frequency * step), math.cos(frequency * step)
-    impulse = decay * sine / frequency
-    slope = decay * (cosine - 0.5 * damping * sine / frequency)
+    turned = square * step * step
+    if turned < ROOTS:
+        sine, cosine = step * (1.0 - turned / 6.0), 1.0 - 0.5 * turned
+    else:
+        frequency = math.sqrt(square)
+        sine, cosine = math.sin(frequency * step) / frequency, math.cos(frequency * step)
+    impulse = decay * sine
+    slope = decay * (cosine - 0.5 * damping * sine)
     integral = (1.0 - slope - damping * impulse) / stiffness
     twice = (step - impulse - damping * integral) / stiffness
     return slope, impulse, integral, twice, (0.5 * step * step - integral - damping * twice) / stiffness

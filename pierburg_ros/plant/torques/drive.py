@@ -25,7 +25,6 @@ def switch(p, s, command, supply, closed_bridge):
     if same and s.serial == p.serial and not heats:
         return
     s.command, s.supply, s.closed_bridge, s.serial = command, supply, closed_bridge, p.serial
-    s.steady = False
     if not closed_bridge:
         s.voltage = s.drive = s.braking = s.current = 0.0
         return
@@ -42,8 +41,9 @@ def switch(p, s, command, supply, closed_bridge):
     if p.supply_sag.source_resistance != 0.0:
         s.resistance += supply_sag.resistance(p.supply_sag, effective)
     constant = p.gear_ratio * p.torque_constant
-    s.drive = constant * s.voltage / s.resistance
-    s.braking = constant * constant / s.resistance
+    per_voltage = constant / s.resistance
+    s.drive = s.voltage * per_voltage
+    s.braking = constant * per_voltage
 
 
 @kernel

@@ -50,17 +50,20 @@ def level(p, direction, velocity, angle, motor_torque):
 
 
 @kernel
-def breakaway(p, share, net, angle, motor_torque, bristle):
-    """Direction in which `net` torque [N.m] sets the standing contact moving, of which it carries this `share`; or 0.
+def standing(p, share, net, angle, motor_torque, bristle):
+    """What `net` torque pushes a standing contact with that carries this `share` of it, and what it holds [N.m].
 
     Bristles hold by leaning, so what they bear is part of the balance, and any push beyond it moves them.
     """
     if p.presliding.stiffness != 0.0:
-        push = net - share * p.presliding.stiffness * bristle
-        held = NOTHING * p.own.torque
-    else:
-        push = net
-        held = share * level(p, 1.0 if push > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
+        return net - share * p.presliding.stiffness * bristle, NOTHING * p.own.torque
+    return net, share * level(p, 1.0 if net > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
+
+
+@kernel
+def breakaway(p, share, net, angle, motor_torque, bristle):
+    """Direction in which `net` torque [N.m] moves a standing contact that carries this `share` of friction, or 0."""
+    push, held = standing(p, share, net, angle, motor_torque, bristle)
     if push > held:
         return 1.0
     return -1.0 if push < -held else 0.0

@@ -12,11 +12,18 @@ from pierburg_ros.kernel import kernel
 
 @kernel
 def ripple(p, motor_angle):
-    """Load torque of the motor itself [N.m] at its angle seen from the shaft [rad], and its derivative."""
+    """Load torque of the motor itself [N.m] at its angle seen from the shaft [rad]."""
     if p.cogging_torque.amplitude == 0.0:
-        return 0.0, 0.0
-    torque = cogging_torque.torque(p.cogging_torque, p.gear_ratio, motor_angle)
-    return torque, cogging_torque.slope(p.cogging_torque, p.gear_ratio, motor_angle)
+        return 0.0
+    return cogging_torque.torque(p.cogging_torque, p.gear_ratio, motor_angle)
+
+
+@kernel
+def ripple_slope(p, motor_angle):
+    """Derivative of `ripple` [N.m/rad]."""
+    if p.cogging_torque.amplitude == 0.0:
+        return 0.0
+    return cogging_torque.slope(p.cogging_torque, p.gear_ratio, motor_angle)
 
 
 @kernel

@@ -18,7 +18,7 @@ def missing(p, motor, time, angle, velocity, acceleration):
     torque = np.empty(time.size)
     for i in range(time.size):
         direction = np.sign(velocity[i])
-        known = load_at(p, angle[i], velocity[i], time[i]) + ripple(p, angle[i])[0]
+        known = load_at(p, angle[i], velocity[i], time[i]) + ripple(p, angle[i])
         friction = direction * level(p, direction, velocity[i], angle[i], motor[i])[0]
         resisting = friction + damping(p, direction) * velocity[i]
         torque[i] = motor[i] - known - resisting - p.total_inertia * acceleration[i]

@@ -63,10 +63,10 @@ def shown(p, s):
 
 
 @kernel
-def read_all(p, values):
-    """Turn each of the `values` shown [rad or rad/s] into what is measured, as the converter gives it."""
+def read_all(p, values, measured):
+    """Put into `measured` what each of the `values` shown [rad or rad/s] is, as the converter gives it."""
     for index in range(values.size):
-        values[index] = quantised(p, read(p, values[index]))
+        measured[index] = quantised(p, read(p, values[index]))
 
 
 @kernel
