@@ -34,7 +34,7 @@ _LOAD: dict[str, set[str]] = {
     "pendulum": {"gravity_torque"},
     "none": set(),
 }
-_POSITIVE = {
+POSITIVE = {
     "armature_resistance",
     "torque_constant",
     "gear_ratio",
@@ -42,7 +42,9 @@ _POSITIVE = {
     "torque_scale",
     "sensor_scale",
 }
-_MAGNITUDES = {"spring_stiffness", "coulomb_friction", "supply_voltage"}
+"""Numbers by which equations divide."""
+MAGNITUDES = {"spring_stiffness", "coulomb_friction", "supply_voltage"}
+"""Numbers of which 0 is the least."""
 FULL_TURN = 2.0 * math.pi
 """The zero of a sensor may be off by so much [rad], where nothing says how far the shaft can go."""
 SMALLEST = 1e-18
@@ -131,11 +133,11 @@ class _Description(_Strict):
     def _possible(self) -> None:
         """Refuse ranges that no actuator has: equations divide by some numbers, and others are magnitudes."""
         for name, parameter in self.parameters.items():
-            if name in _POSITIVE and not parameter.minimum >= SMALLEST:
+            if name in POSITIVE and not parameter.minimum >= SMALLEST:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum above 0")
             if name == "supply_voltage" and not parameter.nominal > 0.0:
                 raise ValueError("supply_voltage is nominally 0; expected the voltage that drives the motor")
-            if name in _MAGNITUDES and not parameter.minimum >= 0.0:
+            if name in MAGNITUDES and not parameter.minimum >= 0.0:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum of 0 or more")
             if max(abs(parameter.minimum), abs(parameter.maximum)) > LARGEST:
                 raise ValueError(f"{name} may exceed {LARGEST:g}; expected a range of the actuator's own size")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from numbers import Real
 
 from pierburg_ros.actuators.actuator import Actuator
-from pierburg_ros.effects import ADDED, DECLARED, EFFECTS
+from pierburg_ros.effects import ADDED, DECLARED, EFFECT, EFFECTS, GEARED
 from pierburg_ros.errors import InputError, near
 
 PAIRS = {name: p for name, p in DECLARED.items() if p.above is not None or p.below is not None}
@@ -72,6 +72,13 @@ def check_together(actuator: Actuator, values: Mapping[str, float]) -> None:
             raise InputError(
                 f"{name} is {values[name]:g} and {other} {values[other]:g}; expected a sum of at least 0, since"
                 " friction does not drive. Change both together."
+            )
+    for name, most in GEARED.items():
+        periods = values[name] * values.get("gear_ratio", 1.0)
+        if periods > most and EFFECT[name.partition(".")[0]].acts(values):
+            raise InputError(
+                f"{name} is {values[name]:g} and gear_ratio {values['gear_ratio']:g}, {periods:g} in one turn of the"
+                f" output; expected {most:g} at most. Lower one of them."
             )
     ends = [values.get(f"hall_voltage_{end}", at) for end, at in (("closed", 0.0), ("open", 1.0))]
     if abs(ends[1] - ends[0]) <= TOLD_APART * max(map(abs, ends)):

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from pierburg_ros.audit.balance import in_balance
 from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, FEWEST, Explained, explained
 from pierburg_ros.audit.fault import Fault
+from pierburg_ros.audit.loop import closed_loop
 from pierburg_ros.audit.reach import DOUBTFUL, impossible
 from pierburg_ros.audit.servo import followed
 from pierburg_ros.audit.signals import Signals
@@ -68,10 +69,10 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
     """What is wrong with one recording."""
     if (unmoved := still(signals, nominal)) is not None:
         return unmoved
-    found = followed(signals, given, nominal)
+    found = followed(signals, given, nominal) or closed_loop(signals, given, slips(signals, nominal), nominal)
     if not found and given is not None and given.suffices:
         timed = Signals.of(recording, TIMED)
-        found = wandering(timed, given) or early(timed, given) or rescaled(signals, given, nominal)
+        found = wandering(timed, signals, given, nominal) or early(timed, given) or rescaled(signals, given, nominal)
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []

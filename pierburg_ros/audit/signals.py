@@ -79,6 +79,11 @@ class Signals:
         """With the inputs `by` [s] later."""
         return replace(self, inputs=replace(self.inputs, time=self.inputs.time + by))
 
+    def late_by(self, begin: float, growth: float) -> Signals:
+        """With the inputs `begin` [s] later, and by `growth` more with every second."""
+        time = self.inputs.time
+        return replace(self, inputs=replace(self.inputs, time=time + begin + growth * time))
+
     def timed_in(self, unit: float) -> Signals:
         """With times counted in `unit` [s]."""
         return replace(self, time=unit * self.time, inputs=replace(self.inputs, time=unit * self.inputs.time))

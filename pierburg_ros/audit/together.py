@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.audit.balance import in_balance
 from pierburg_ros.audit.explained import FARTHEST, FULL, RELUCTANCE, STEP, Explained, Fit
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
@@ -26,20 +27,25 @@ each recording otherwise. Measured: n = 50 pairs of one actuator leave at most `
 MOST = 5
 """Recordings that are held against the first one. Work: half a second each."""
 
+COPPER = 0.0039
+"""Rise of copper's resistance [1/K]. Given: by the metal, at 20 degC."""
+HOTTEST = 135.0
+"""Rise of temperature that a winding bears [K]. Given: class F of IEC 60085, 155 degC, from 20 degC."""
+WINDING = "armature_resistance"
+"""The number that goes with the temperature."""
+
 Pair = tuple[Signals, Explained]
 
 
 def apart(pairs: Sequence[Pair], nominal: Model) -> list[Fault]:
     """The recordings that are not of the actuator of the first one; those that tell too little are left aside."""
-    told = [(signals, found) for signals, found in pairs if found.share >= ALONE]
+    told = [(signals, found) for signals, found in pairs if found.share >= ALONE and not in_balance(signals, nominal)]
     return [fault for other in told[1 : MOST + 1] if (fault := _apart(told[0], other, nominal)) is not None]
 
 
 def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:
-    shares = common(first, other, nominal)
-    own = [found.share for _, found in (first, other)]
-    lost = max(alone - together for alone, together in zip(own, shares, strict=True))
-    if lost < LEFT + TIMES * (1.0 - min(own)):
+    shares, _ = common(first, other, nominal)
+    if not _lost(first, other, shares):
         return None
     values = [found.model.values for _, found in (first, other)]
     names = Fit(first[0], nominal).names
@@ -50,20 +56,51 @@ def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:
         f" differ most in {name}: {values[0][name]:.3g} there, {values[1][name]:.3g} here."
     )
     what = f"of another actuator than {first[0].name}, or of one that was changed"
+    evidence += _warmed(first, other, nominal)
     return Fault(other[0].name, "recording", what, evidence, "diagnose the recordings one by one")
 
 
-def common(first: Pair, other: Pair, nominal: Model) -> list[float]:
-    """Shares of the two motions that one set of numbers explains."""
+def _lost(first: Pair, other: Pair, shares: list[float]) -> bool:
+    """Whether numbers that explain these `shares` of two motions explain too little beside their own."""
+    own = [found.share for _, found in (first, other)]
+    lost = max(alone - together for alone, together in zip(own, shares, strict=True))
+    return lost >= LEFT + TIMES * (1.0 - min(own))
+
+
+def _warmed(first: Pair, other: Pair, nominal: Model) -> str:
+    """What to say where the temperature of the winding alone would be a reason, too."""
+    if WINDING not in Fit(first[0], nominal).names:
+        return ""
+    shares, factor = common(first, other, nominal, WINDING)
+    rise = (max(factor, 1.0 / factor) - 1.0) / COPPER
+    if rise > HOTTEST or _lost(first, other, shares):
+        return ""
+    return f" A winding {rise:.0f} K {'hotter' if factor > 1.0 else 'colder'} than there explains it, too."
+
+
+def common(first: Pair, other: Pair, nominal: Model, but: str | None = None) -> tuple[list[float], float]:
+    """Shares of the two motions that one set of numbers explains, and the factor by which one number may differ.
+
+    It is the number `but` of the other recording, 1 where there is none.
+    """
     fits = [Fit(signals, nominal, found.length) for signals, found in (first, other)]
-    size = len(fits[0].names)
+    names = fits[0].names
+    differs = np.array([[float(name == but) for name in names]] if but else np.empty((0, len(names))))
+
+    def points(point: Signal) -> tuple[Signal, Signal]:
+        same = point[: len(names)]
+        return same, same + point[len(names) :] @ differs
 
     def cost(point: Signal) -> Signal:
-        left = [fit.left(fit.model(point)) for fit in fits]
+        left = [fit.left(fit.model(own)) for fit, own in zip(fits, points(point), strict=True)]
         return np.concatenate([RELUCTANCE * point, *(each / math.sqrt(each.size) for each in left)])
 
-    begins = (fit.point(found.model) for fit, (_, found) in zip(fits, (first, other), strict=True))
+    begins = (
+        np.append(fit.point(found.model), np.zeros(len(differs)))
+        for fit, (_, found) in zip(fits, (first, other), strict=True)
+    )
     begin = min(begins, key=lambda point: float(np.sum(np.square(cost(point)))))
-    bound = np.full(size, FARTHEST)
-    found = minimise(cost, np.clip(begin, -bound, bound), -bound, bound, np.full(size, STEP), FULL, 1e-3)
-    return [fit.share(fit.model(found.point)) for fit in fits]
+    bound = np.full(begin.size, FARTHEST)
+    found = minimise(cost, np.clip(begin, -bound, bound), -bound, bound, np.full(begin.size, STEP), FULL, 1e-3)
+    shares = [fit.share(fit.model(own)) for fit, own in zip(fits, points(found.point), strict=True)]
+    return shares, math.exp(float(np.sum(found.point[len(names) :])))

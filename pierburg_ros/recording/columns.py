@@ -26,7 +26,9 @@ class Columns:
     wrong: dict[str, tuple[int, str]]
 
     def values(self, column: str) -> Signal:
-        """The numbers of one column."""
+        """The numbers of one column; InputError where several have its name, or where it holds anything else."""
+        if self.header.count(column) > 1:
+            raise InputError(f"{self.name} has several columns {column}, expected one. Rename the others.")
         if column in self.wrong:
             row, cell = self.wrong[column]
             raise InputError(f"{self.name} has {cell!r} as {column} in row {row}, expected a finite number. Repair it.")

@@ -200,15 +200,13 @@ class TableReader:
 
     @staticmethod
     def check_column(part: Columns, column: str, origin: str) -> None:
-        """Refuse a column that a person chose and that is not there, or is there twice."""
+        """Refuse a column that a person chose and that is not there."""
         place = "" if origin == "--topic" else f"{origin}: "
         if column not in part.cells:
             raise InputError(
                 f"{place}{part.name} has no column {column} (found: {part.listed()}).{near(column, part.header)}"
                 " Name one of those."
             )
-        if part.header.count(column) > 1:
-            raise InputError(f"{place}{part.name} has several columns {column}, expected one. Rename the others.")
 
 
 def topic_of_table(origin: str, name: str, write: str) -> InputError:

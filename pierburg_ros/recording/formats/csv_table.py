@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterator
 from io import TextIOWrapper
+from itertools import chain
 from pathlib import Path
 
 from pierburg_ros.errors import InputError, printable
@@ -15,6 +16,8 @@ from pierburg_ros.recording.formats.messages import Wanted
 
 MOST_CELLS = 1 << 25
 """Cells kept at most, 256 MiB: six hours of three columns at 500 Hz. The recording made of them takes five times it."""
+Table = Iterator[tuple[int, list[str]]]
+"""Number of the line and cells of each row."""
 TRUTH = {"true": 1.0, "false": 0.0}
 NOTHING = float("nan")
 """Stands for an empty cell, which leaves a signal as it was."""
@@ -24,30 +27,42 @@ def read_table(path: Path, wanted: Wanted) -> Columns:
     """The columns `wanted` of the CSV file at `path`."""
     with opened(path, "a CSV file") as binary:
         file = TextIOWrapper(binary, encoding="utf-8-sig", errors="replace", newline="")
-        start = next(lines(file, path.name), "")
+        start = next((line for line in lines(file, path.name) if not is_note(line)), "")
         delimiter = next((mark for mark in "\t;" if mark in start), ",")
         file.seek(0)
-        table = rows(file, path.name, delimiter)
         name = printable(path.name)
-        return filled(name, header_of(name, table, delimiter), table, wanted)
+        return filled(name, *parted(name, rows(file, path.name, delimiter), delimiter), wanted)
 
 
-def header_of(name: str, table: Iterator[tuple[int, list[str]]], delimiter: str) -> list[str]:
-    """The names of the columns."""
-    _, first = next(table, (0, []))
-    if not first:
-        raise InputError(f"{name} is empty, expected a header and rows. Record again.")
-    header = [cell.strip() for cell in first]
-    header[0] = header[0].removeprefix("#").lstrip()  # as NumPy writes it
-    if any(is_number(cell) for cell in header):
+def parted(name: str, table: Table, delimiter: str) -> tuple[list[str], Table]:
+    """The names of the columns and the rows below: notes in front are passed over, but for a header that is one."""
+    note: list[str] = []
+    for line, row in table:
+        if is_note(row[0]):
+            note = row
+            continue
+        if not any(is_number(cell) for cell in row):
+            return names_of(row), table
+        if note:  # as NumPy writes it
+            return names_of([note[0].lstrip().removeprefix("#"), *note[1:]]), chain([(line, row)], table)
         raise InputError(
-            f"{name} has no header (its first row is {delimiter.join(first)[:60]}), {FORM}."
+            f"{name} has no header (its first row is {delimiter.join(row)[:60]}), {FORM}."
             " Add a first row with the names of the columns."
         )
-    return header
+    raise InputError(f"{name} is empty, expected a header and rows. Record again.")
 
 
-def filled(name: str, header: list[str], table: Iterator[tuple[int, list[str]]], wanted: Wanted) -> Columns:
+def names_of(row: list[str]) -> list[str]:
+    """The names of the columns in a header."""
+    return [cell.strip() for cell in row]
+
+
+def is_note(text: str) -> bool:
+    """Whether a line, or the first cell of a row, is there for people."""
+    return text.lstrip().startswith("#")
+
+
+def filled(name: str, header: list[str], table: Table, wanted: Wanted) -> Columns:
     """The wanted columns, filled from the rows that are left."""
     kept = {column: place for place, column in enumerate(header) if wanted(column)}
     columns = Columns(name, tuple(header), {column: array("d") for column in kept}, {})
@@ -104,9 +119,9 @@ def decimal_comma(cell: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Whether `cell` reads as a number."""
+    """Whether `cell` reads as a number, with a point or a comma before its decimals."""
     try:
-        float(cell)
+        float(cell.replace(",", "."))
     except ValueError:
         return False
     return True

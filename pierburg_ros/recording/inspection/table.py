@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,10 @@ def column_content(
     filled = np.isfinite(values)
     time = clock.seconds[filled] if clock else np.zeros(0)
     low, high = field.limits or (None, None)
+    contents = contents_of([field], guessed)
+    if clock and field.name in clock.columns:
+        unit = f" [{clock.unit}]" if len(clock.columns) == 1 else ""
+        contents = tuple(replace(each, could_be=f"{low:.6g} to {high:.6g}: time{unit}?") for each in contents)
     return TopicContent(
         f"{field.file} {field.name}".lstrip(),
         COLUMN,
@@ -70,7 +75,7 @@ def column_content(
         pauses(time - time[0]) if time.size else (),
         (COLUMN,),
         used_as(field, chosen),
-        contents_of([field], guessed),
+        contents,
     )
 
 

@@ -48,6 +48,12 @@ def test_reads_a_header_as_numpy_writes_it(tmp_path):
     assert read_recording(tmp_path / "run.csv").measured.tolist() == [1.0, 2.0]
 
 
+@pytest.mark.parametrize("header", ["t;duty;position\n", "# t;duty;position\n"])
+def test_notes_in_front_of_the_header_are_passed_over(tmp_path, header):
+    text = f"# bench 3, 2026-11-20, throttle A\n#\n{header}0,0;0;0,5\n0,1;0;0,7\n"
+    assert read_recording(write(tmp_path, text), topics={"time": "t"}).measured.tolist() == [0.5, 0.7]
+
+
 def test_reads_truth_values(tmp_path):
     path = write(tmp_path, "time,duty,position,enabled\n0,0,0,True\n1,0,1,false\n")
     assert read_recording(path).enabled.values.tolist() == [1.0, 0.0]
@@ -57,6 +63,18 @@ def test_no_header(tmp_path):
     assert refusal(write(tmp_path, "0.0,0.1,0.42\n0.1,0.1,0.5\n")) == (
         "run.csv has no header (its first row is 0.0,0.1,0.42), expected time, duty, and hall_voltage or"
         " position. Add a first row with the names of the columns."
+    )
+
+
+def test_no_header_where_decimals_have_a_comma(tmp_path):
+    assert "has no header (its first row is 0,0;0,1;0,42)" in refusal(write(tmp_path, "0,0;0,1;0,42\n"))
+
+
+def test_several_columns_of_one_name_are_refused_where_they_are_read(tmp_path):
+    text = "time,duty,{},hall_voltage,{}\n0,0,1,0.4,2\n1,0,1,0.5,2\n"
+    assert read_recording(write(tmp_path, text.format("note", "note"))).measured.tolist() == [0.4, 0.5]
+    assert refusal(write(tmp_path, text.format("note", "duty"))) == (
+        "run.csv has several columns duty, expected one. Rename the others."
     )
 
 

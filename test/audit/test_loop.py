@@ -1,0 +1,71 @@
+"""What the rule of a closed loop says of times and units, and that it says nothing against the motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.audit import audit
+from pierburg_ros.audit.loop import rule
+from pierburg_ros.audit.signals import Signals
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.plant import Plant
+from pierburg_ros.recording import Channel, Recording
+
+SERVO = Model.nominal(read_actuator("xl330"))
+LACKING = SERVO.with_values({"load_dependent_friction.coefficient": 0.2, "supply_sag.source_resistance": 1.0})
+"""What a servo has and its description lacks, so that the motion alone does not tell when its duty acted."""
+TIME = np.arange(0.0, 10.0, 0.005)
+GAIN = 1.1
+
+
+def in_loop(slow: int = 0, seed: int = 0) -> Recording:
+    """A servo that follows smooth setpoints by a duty that is computed from what was `slow` samples before."""
+    phases = np.random.default_rng(seed).uniform(0.0, 6.0, 3)
+    wanted = sum(0.5 * np.sin(rate * TIME + phase) for rate, phase in zip((1.1, 2.7, 4.9), phases, strict=True))
+    plant = Plant(LACKING, noise=0.0007, seed=seed)
+    measured, duty = np.empty(TIME.size), np.zeros(TIME.size)
+    for sample in range(TIME.size):
+        measured[sample] = plant.measure()
+        past = sample - slow
+        if past >= 0:
+            duty[sample] = np.clip(GAIN * (wanted[past] - measured[past]), -1.0, 1.0)
+        plant.advance(duty[sample], 0.005)
+    return Recording("loop", "position", TIME, measured, Channel(TIME, duty), setpoints=Channel(TIME, wanted))
+
+
+def late(recording: Recording, by: float) -> Recording:
+    return replace(recording, command=Channel(recording.command.time + by, recording.command.values))
+
+
+def test_a_loop_is_read_from_its_signals():
+    found = rule(Signals.of(in_loop()), SERVO)
+    assert found is not None and found.late == 0
+    assert (found.by_setpoint, found.by_angle) == pytest.approx((GAIN, -GAIN), rel=1e-3)
+
+
+@pytest.mark.parametrize("by", [0.02, 0.05])
+def test_an_input_that_fits_the_angle_of_a_moment_ago_was_stamped_late(by):
+    one = in_loop()
+    assert audit([one], SERVO) == []
+    (fault,) = audit([late(one, by)], SERVO)
+    assert fault.signal == "duty" and fault.what == f"stamped {1e3 * by:.3g} ms late"
+
+
+def test_a_slow_controller_is_no_fault():
+    """Its duty fits what was before, too, but the shaft moves as it says."""
+    slow = in_loop(slow=8)
+    assert rule(Signals.of(slow), SERVO).late == 8
+    assert audit([slow], SERVO) == []
+
+
+def test_an_angle_in_another_unit_than_the_setpoint_is_named():
+    one = in_loop()
+    (fault,) = audit([replace(one, measured=one.measured / (2.0 * np.pi))], SERVO)
+    assert fault.mend == "`position: {unit: rev}`" or "turns read as radians" in fault.what
+
+
+def test_a_setpoint_that_nothing_follows_says_nothing():
+    one = in_loop()
+    assert rule(Signals.of(replace(one, setpoints=Channel(TIME, np.sin(7.0 * TIME)))), SERVO) is None
