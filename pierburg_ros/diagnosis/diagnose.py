@@ -95,7 +95,10 @@ def examined(
     if verdict_on(found.chosen) != "unexplained":
         return found, None
     if single and (doubt := rounded(found, recordings[0])):
-        return replace(found, data=replace(found.data, remarks=(*found.data.remarks, doubt))), unnamed(found)
+        coarse = search(doubt.kept_apart(data), nominal, progress, jobs, None, deadline)
+        if verdict_on(coarse.chosen) != "unexplained":
+            return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
+        return replace(found, data=doubt.said(found.data, unsettled=True)), unnamed(found)
     if single and not turning:
         tell = staged(progress, "disturbances")
         found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)

@@ -141,7 +141,8 @@ class Horizon(Errors):
     """Errors of the three models some time after they have been set to the measured state, on unseen samples."""
 
     after: Number
-    """That time [s]; null: over whole recordings from their first sample."""
+    """That time [s]; null: over whole recordings from their first sample. A model that remembers long, as heat does,
+    has an error there alone: no sensor shows its state."""
 
 
 class FitQuality(Part):

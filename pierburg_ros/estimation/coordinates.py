@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import ADDED, DECLARED, EFFECT
+from pierburg_ros.effects import ADDED, DECLARED, EFFECT, GEARED
 from pierburg_ros.effects.effect import HIGHEST_SHARE
 from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
@@ -114,6 +114,10 @@ def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
         value, most = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, below))
         if value != 0.0 and value >= most:
             ordered[name] = HIGHEST_SHARE * most
+    for name, most in GEARED.items():
+        ratio = ordered.get("gear_ratio", nominal.values.get("gear_ratio", 1.0))
+        if ordered.get(name, nominal.values[name]) * ratio > most:
+            ordered[name] = HIGHEST_SHARE * most / ratio
     for name in ADDED:
         least = least_added(name, ordered, nominal)
         if ordered.get(name, nominal.values[name]) < least:

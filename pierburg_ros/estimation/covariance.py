@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri, stdtrit
 
 from pierburg_ros.arrays import Flags, Signal
 
@@ -40,12 +40,12 @@ def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance
     inverse, undetermined = _inverse(jacobian)
     length = max(correlation_length(part) for part in residuals)
     if length <= 1:
-        factor = float(stats.norm.ppf(0.975))
+        factor = float(ndtri(0.975))
         return Covariance(variance * inverse, undetermined, factor, variance**0.5, True, residual.size)
     scores = _block_scores(jacobian, residuals, 4 * length)
     blocks = len(scores)
     middle = scores.T @ scores * blocks / max(blocks - 1, 1)
-    factor = float(stats.t.ppf(0.975, max(blocks - jacobian.shape[1], 1)))
+    factor = float(stdtrit(max(blocks - jacobian.shape[1], 1), 0.975))
     return Covariance(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
 
 

@@ -31,6 +31,9 @@ as can be; not varied."""
 WILD = 1e6
 """Largest error [noise] that is told from larger ones. Derived: its square, summed over a day at 1 kHz, is 1e20; an
 unstable simulation goes on to where squares are no numbers."""
+UNSIMULATED = 1e3
+"""Error [noise] that stands where a model cannot be simulated. Chosen: more than any error of a model that can be,
+which the noise tells by; not varied."""
 
 UNKNOWN = "messages of the duty are missing"
 """Why spans without a known input are left out."""
@@ -76,11 +79,13 @@ class Data:
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Measured minus simulated over all runs, shape (samples,), in units of the noise.
 
-        Very large, but a number, from where a model cannot be simulated.
+        Very large, but a number, from where a model cannot be simulated; and of changing sign, so that no sample tells
+        the next.
         """
         parts = [run.measured - run.simulated(model, switch) for run in self.runs]
-        whole = np.nan_to_num(np.concatenate(parts) / self.noise, nan=1e3, posinf=1e3, neginf=-1e3)
-        return np.clip(whole, -WILD, WILD)
+        whole = np.concatenate(parts) / self.noise
+        unknown = UNSIMULATED * (-1.0) ** np.arange(whole.size)
+        return np.clip(np.where(np.isfinite(whole), whole, unknown), -WILD, WILD)
 
     @property
     def scales(self) -> Scales:

@@ -116,13 +116,16 @@ class Estimator:
         steps: Signal | None = None,
         held: str | None = None,
         tolerance: float = 1e-4,
+        slopes: Signal | None = None,
+        enough: float = -np.inf,
     ) -> Fit:
         """Best values of an explanation from `start`, dotted values; what it lacks starts nominal.
 
         A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not
         decide; it ends with the forgiving cost and wants an ordinary fit after it. `steps` are the differences
         of the Jacobian, shape (free quantities,), in the coordinates of the search. The quantity `held` stays at its
-        start. A descent ends where an iteration lowers the cost by less than `tolerance` of it.
+        start. A descent ends where an iteration lowers the cost by less than `tolerance` of it, or where the cost is
+        `enough`; it begins with known `slopes`, if given.
         """
         coordinates = self.coordinates(explanation)
         begin = coordinates.point({**self.nominal.values, **(start or {})})
@@ -136,7 +139,7 @@ class Estimator:
             return forgiven(residual) if forgiving else residual
 
         steps = coordinates.steps if steps is None else steps
-        solution = minimise(cost, begin, lower, upper, steps, iterations, tolerance, self.over)
+        solution = minimise(cost, begin, lower, upper, steps, iterations, tolerance, self.over, slopes, enough)
         return self._fitted(explanation, coordinates, solution)
 
     def at(self, explanation: Explanation, values: Mapping[str, float] | None = None) -> Fit:

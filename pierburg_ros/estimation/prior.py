@@ -30,6 +30,12 @@ def improbability(coordinates: Coordinates, point: Signal) -> Signal:
     return np.array(rows, dtype=np.float64)
 
 
+def implausible(coordinates: Coordinates, point: Signal) -> set[str]:
+    """Names of the quantities with a value that 95 of 100 actuators do not have."""
+    rows = np.abs(improbability(coordinates, point))
+    return {name for name, row in zip(coordinates.names, rows, strict=True) if row > SURE}
+
+
 def _row(coordinates: Coordinates, place: int, x: float) -> float:
     name, axis = coordinates.names[place], coordinates.axes[place]
     if "@" in name:

@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import savgol_coeffs
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
@@ -146,6 +145,8 @@ def stretch_length(time: Signal, measured: Signal, quantity: str) -> float:
 
 def spread(measured: Signal, order: int, interval: float, noise: float) -> float:
     """Standard deviation of a derivative of `measured`, over a window in which the noise is the lesser part of it."""
+    from scipy.signal import savgol_coeffs  # takes long to load, and most actuators need none
+
     window, own, added = WINDOW, 0.0, 1.0
     while added > own and window <= measured.size:
         weights = savgol_coeffs(window, 3, deriv=order, delta=interval, use="dot")

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
-from scipy.signal import savgol_filter
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.plant import Inputs, Model
@@ -139,8 +138,7 @@ def ahead(inputs: Inputs, lag: float) -> Inputs:
     if lag == 0.0 or inputs.command.size < WINDOW:
         return inputs
     step = float(np.median(np.diff(inputs.time)))
-    rate = savgol_filter(inputs.command, WINDOW, 3, deriv=1, delta=step)
-    return replace(inputs, command=np.asarray(inputs.command + lag * rate))
+    return replace(inputs, command=inputs.command + lag * _derivative(inputs.command, 1, step))
 
 
 def over_a_turn(model: Model, parts: Sequence[Part]) -> Balance:
@@ -159,6 +157,13 @@ def finest(place: Signal) -> float:
     return 0.5 / float(np.quantile(steps, SLOW_PART)) if steps.size else 0.0
 
 
+def _derivative(values: Signal, order: int, step: float) -> Signal:
+    """The derivative of some order, by cubics through `WINDOW` samples a `step` apart; order 0 smooths."""
+    from scipy.signal import savgol_filter  # takes long to load, and most actuators need none
+
+    return np.asarray(savgol_filter(values, WINDOW, 3, deriv=order, delta=step))
+
+
 def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Motion:
     """The motion at even steps, its derivatives from cubics through `WINDOW` samples, four steps to each."""
     step = float(np.median(np.diff(time)))
@@ -169,7 +174,7 @@ def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Mo
     lacking = missing(model.record()[0], driven, even, shown, still, still)
 
     def derived(values: Signal, order: int) -> Signal:
-        return np.asarray(savgol_filter(values, WINDOW, 3, deriv=order, delta=step))[:: WINDOW // 4]
+        return _derivative(values, order, step)[:: WINDOW // 4]
 
     return _Motion(
         time=even[:: WINDOW // 4],

@@ -86,3 +86,50 @@ def test_the_jacobian_on_a_bound_is_taken_from_within() -> None:
     solution = minimise(residual, np.zeros(2), np.full(2, -1.0), np.ones(2), STEP)
     assert np.array_equal(solution.point, [1.0, 1.0])
     assert np.allclose(solution.jacobian, [[-0.5, 0.0], [0.0, 1.0]], atol=1e-4)
+
+
+def linear_problem():
+    """A residual with its slopes and its least cost, and how often it was asked."""
+    random = np.random.default_rng(2)
+    matrix, wanted = random.standard_normal((40, 2)), random.standard_normal(40)
+    asked = []
+
+    def residual(x):
+        asked.append(x)
+        return matrix @ x - wanted
+
+    least = float(np.linalg.lstsq(matrix, wanted, rcond=None)[1][0])
+    return residual, matrix, least, asked
+
+
+def test_known_slopes_lead_to_the_minimum_without_differences() -> None:
+    residual, matrix, least, asked = linear_problem()
+    far = np.full(2, 10.0)
+    solution = minimise(residual, np.zeros(2), -far, far, STEP, 0, slopes=matrix)
+    assert abs(solution.cost - least) < 1e-9
+    assert len(asked) == 2
+
+
+def test_slopes_that_foresee_another_cost_are_not_followed() -> None:
+    residual, matrix, least, _ = linear_problem()
+    far = np.full(2, 10.0)
+    assert np.array_equal(minimise(residual, np.zeros(2), -far, far, STEP, 0, slopes=2.0 * matrix).point, np.zeros(2))
+    assert abs(minimise(residual, np.zeros(2), -far, far, STEP, slopes=2.0 * matrix).cost - least) < 1e-3
+
+
+def test_a_cost_that_is_enough_ends_the_descent() -> None:
+    residual, _, least, asked = linear_problem()
+    far, start = np.full(2, 10.0), np.array([5.0, 5.0])
+    first = minimise(residual, start, -far, far, STEP, 1).cost
+    asked.clear()
+    assert minimise(residual, start, -far, far, STEP, enough=1.01 * first, tolerance=0.0).cost == first > least
+    assert len(asked) == 4
+
+
+def test_quantities_that_are_not_told_apart_are_solved_for() -> None:
+    residual, matrix, _, _ = linear_problem()
+    twice = np.column_stack([matrix[:, 0], matrix[:, 0], np.zeros(40)])
+    far, step = np.full(3, 10.0), np.full(3, 1e-5)
+    solution = minimise(lambda x: residual(np.array([x[0] + x[1], 0.0])), np.zeros(3), -far, far, step, 0, slopes=twice)
+    rest = np.linalg.lstsq(matrix[:, :1], -residual(np.zeros(2)), rcond=None)[1][0]
+    assert abs(solution.cost - rest) < 1e-6

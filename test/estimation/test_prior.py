@@ -11,7 +11,7 @@ from pierburg_ros.effects import DECLARED
 from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.prior import KNOWN, improbability
+from pierburg_ros.estimation.prior import KNOWN, implausible, improbability
 from pierburg_ros.plant import Model
 
 HEAT = "thermal_resistance.heat_capacity"
@@ -61,3 +61,11 @@ def test_a_fit_with_a_unit_gives_way_to_what_is_known() -> None:
     assert found[0] == pytest.approx(0.4, abs=0.002)
     assert abs(found[0] - nominal) > abs(found[1] - nominal) > abs(found[2] - nominal)
     assert found[2] == pytest.approx(nominal, rel=0.01)
+
+
+def test_what_no_actuator_has_is_told_by_name():
+    names = ("cogging_torque.amplitude", "cogging_torque.periods_per_motor_revolution")
+    coordinates = Coordinates(names, NOMINAL, 60.0)
+    for periods, told in ((6.0, set()), (200.0, {names[1]})):
+        point = coordinates.point({**NOMINAL.values, names[0]: 0.01, names[1]: periods})
+        assert implausible(coordinates, point) == told

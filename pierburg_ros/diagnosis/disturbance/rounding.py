@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.estimation.data import rms
+from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED, grid
 from pierburg_ros.plant import Inputs
@@ -19,8 +19,32 @@ AS_MUCH = 3.0
 that are drawn do more or less, and those of long holds count most; not varied."""
 
 
-def rounded(found: Found, recording: Recording) -> str | None:
-    """What to say where all that is left may come from the steps in which the input was logged; None where not."""
+@dataclass(frozen=True)
+class Rounding:
+    """What the steps in which the input of a recording was logged do to the signal: `size` in the measured unit."""
+
+    recording: Recording
+    step: float
+    size: float
+
+    def kept_apart(self, data: Data) -> Data:
+        """`data` in which that counts as noise, and as much of the evidence as it could give is none."""
+        return replace(data, noise=float(np.hypot(data.noise, self.size)), unlike=self.size)
+
+    def said(self, data: Data, unsettled: bool) -> Data:
+        """`data` with a remark on it; `unsettled` where an explanation that stands out was not found beside it."""
+        name, driven = self.recording.name, self.recording.input
+        moved = f"{self.size:.2g} {data.actuator.unit}"
+        then = ", as much as is left: nothing can be concluded" if unsettled else ", which counts as noise"
+        remark = (
+            f"{name}: the {driven} is logged in steps of {self.step:.3g}. If what was applied lay between them, that"
+            f" moves the signal by some {moved}{then}. Log the {driven} as it is applied."
+        )
+        return replace(data, remarks=(*data.remarks, remark))
+
+
+def rounded(found: Found, recording: Recording) -> Rounding | None:
+    """The steps in which the input was logged, where all that is left may come from them; None where not."""
     step = grid(recording.command.values)
     if step == 0.0:
         return None
@@ -31,12 +55,7 @@ def rounded(found: Found, recording: Recording) -> str | None:
     does = rms(np.concatenate(moved)) / found.data.noise
     if np.hypot(1.0, does) <= EXPLAINED or found.chosen.ratio > AS_MUCH * np.hypot(1.0, does):
         return None
-    size = f"{does * found.data.noise:.2g} {found.data.actuator.unit}"
-    return (
-        f"{recording.name}: the {recording.input} is logged in steps of {step:.3g}. If what was applied lay between"
-        f" them, that moves the signal by some {size}, as much as is left: nothing can be concluded. Log the"
-        f" {recording.input} as it is applied."
-    )
+    return Rounding(recording, step, does * found.data.noise)
 
 
 def between_steps(inputs: Inputs, recording: Recording, step: float) -> Inputs:

@@ -63,14 +63,16 @@ RECORD: dict[Kind, str] = {
     "no_movement": "Record again with {input} steps large enough to move the shaft both ways.",
     "constant_duty": "Record again with {input} steps of several sizes.",
     "saturated": "Record again with {input} steps well within the limits, up and down.",
-    "begins_moving": "Start recording before the shaft moves.",
-    "short": "Record a minute, with movements in both directions.",
-    "slow_sampling": "Record with a shorter sample period.",
-    "gaps": "Record on an idle machine, or with the recorder's queue made longer.",
-    "one_direction": "Record opening and closing over the same angles.",
-    "little_travel": "Record movements over the whole travel.",
-    "closed_stop": "Record a return to the closed stop at {input} 0, then press against it with negative {input}.",
-    "open_stop": "Record a run to the open stop, and press against it with more and less {input}.",
+    "begins_moving": "Start recording before the shaft moves: how fast it moved at first is not known.",
+    "short": "Record a minute, with movements in both directions: less does not show what is rare or grows with time.",
+    "slow_sampling": "Record with a shorter sample period: short delays and lags do not show.",
+    "gaps": "Samples are missing: record on an idle machine, or with the recorder's queue made longer.",
+    "one_direction": "To tell friction from the load, record opening and closing over the same angles.",
+    "little_travel": "To see what depends on the angle, record movements over the whole travel.",
+    "closed_stop": "To see whether the closed stop gives and the sensor is right there, record a return to it at"
+    " {input} 0, then press against it with negative {input}.",
+    "open_stop": "To see whether the open stop gives and the sensor is right there, record a run to it, and press"
+    " against it with more and less {input}.",
 }
 """What to record next to lift each limit; `{input}` is what drives the actuator."""
 

@@ -223,7 +223,9 @@ def _excluded(estimator: Estimator, base: Fit, case: _Case, values: dict[str, fl
     held = Variant(case.variant.effect, (), fixed)
     explanation = Explanation(base.explanation.drifted, (*base.explanation.variants, held), base.explanation.changed)
     try:
-        fit = estimator.fit(explanation, {**base.values, **values}, BRIEF // 2)
+        possible, slopes = base.chi2 + allowed, base.solution.jacobian
+        start = {**base.values, **values}
+        fit = estimator.fit(explanation, start, BRIEF // 2, slopes=slopes, enough=possible)
     except InputError:
         return False
-    return fit.chi2 - base.chi2 > allowed
+    return fit.chi2 > possible

@@ -13,8 +13,8 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.search.race import ROUNDS
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.likelihood import SURE, repetition
-from pierburg_ros.estimation.prior import improbability
+from pierburg_ros.estimation.likelihood import repetition
+from pierburg_ros.estimation.prior import implausible, improbability
 from pierburg_ros.plant import Model
 
 FOLDS = 4
@@ -89,8 +89,9 @@ def parts_of(nominal: Model, folds: Folds, fit: Fit, over: Map = map) -> Parts:
 
     errors, stretches = zip(*over(left_of, folds), strict=True)
     coordinates = Estimator(folds[0][0], nominal).coordinates(fit.explanation)
-    rows = improbability(coordinates, coordinates.point(fit.values))
-    plausible = bool(np.all(np.abs(rows[len(fit.explanation.drifted) :]) <= SURE))
+    point = coordinates.point(fit.values)
+    rows, own = improbability(coordinates, point), set(fit.explanation.names) - set(fit.explanation.drifted)
+    plausible = not own & implausible(coordinates, point)
     return Parts(np.array(errors), np.array(stretches), float(rows @ rows), plausible)
 
 

@@ -14,7 +14,8 @@ from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported
+from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -57,6 +58,7 @@ def remainder(
     """
     data, estimator, recalibrated = found.data, found.estimator, found.recalibrated
     weights: Mapping[str, Weight] = {}
+    base: Fit | None = None
     deadline = deadline or Deadline()
     around = supported_around(data, found.nominal, recalibrated)
     vouched = vouched_around(data, found.nominal) if around and data.several else None
@@ -65,28 +67,48 @@ def remainder(
     with workers(jobs, deadline) as pool:
         if shared is not None:
             fit, left_out = shared
-            base = estimator.restated(fit)
-            shape = fit_shape(data, [lambda _: base.model], pool, progress)
-        elif (stood := around or _stood(found, pool, progress)) and not _doubtful(stood, found):
+            base = named = estimator.restated(fit)
+            shape = fit_shape(data, [lambda _: named.model], pool, progress)
+        elif stood := _stood(found, pool, progress) if around is None else _undoubted(around, found):
             left_out, weights = {}, _by_effect(stood)
             if vouched is not None:
                 left_out, weights = dict.fromkeys(weights, vouched), {}
             estimator = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
-            base = estimator.restated(stood.scored.fit)
-            shape = fit_shape(data, [lambda _: base.model], pool, progress)
+            base = named = estimator.restated(stood.scored.fit)
+            shape = fit_shape(data, [lambda _: named.model], pool, progress)
         else:
-            explanation, left_out = recalibrated.explanation, {}
-            shape = fit_shape(data, recalibrations(found.nominal, explanation), pool, progress)
-            drifted = Explanation() if shape.base is found.nominal else explanation
-            base = estimator.at(drifted, shape.base.values)
-        known = estimates(estimator, base, pool.map)
+            left_out = {}
+            shape = fit_shape(data, recalibrations(found.nominal, recalibrated.explanation), pool, progress)
         stands = confirmed(shape, data, pool)
+        base = base or _below(found, shape if stands else None)
+        known = estimates(estimator, base, pool.map)
     return Remainder(found.estimator.restated(base), known, left_out, weights, shape if stands else None)
 
 
+def _below(found: Found, shape: Shape | None) -> Fit:
+    """The model without an effect: what the `shape` that stands was fitted to, else the recalibrated one."""
+    explanation = found.recalibrated.explanation
+    values = found.recalibrated.values if shape is None else shape.base.values
+    changed = any(values[name] != found.nominal.values[name] for name in explanation.names)
+    return found.estimator.at(explanation if changed else Explanation(), values)
+
+
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
-    """What unseen samples of a single recording confirm."""
-    return (found.beside or supported(found.data, found.nominal, pool, progress)).named
+    """What unseen samples of a single recording confirm and nothing simpler stands for, and the play of its sensor.
+
+    A play is read from the samples themselves: it needs none of the others.
+    """
+    data, nominal = found.data, found.nominal
+    beside = found.beside or supported(data, nominal, pool, progress)
+    named = _undoubted(told_apart(beside.confirmed, data, nominal, pool, progress), found)
+    bare = named or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
+    both = with_play(bare, beside.reached.fit, data, nominal)
+    return both if both.weights else None
+
+
+def _undoubted(stood: Supported, found: Found) -> Supported | None:
+    """`stood`, unless there is doubt of it."""
+    return None if _doubtful(stood, found) else stood
 
 
 def _doubtful(stood: Supported, found: Found) -> bool:

@@ -31,6 +31,8 @@ SCATTERED = 1500
 """Points of an error over angle or velocity. Work: more lie on top of each other."""
 NUMBERED = 6
 """Windows that are numbered in a plot. Chosen: more would overlap."""
+CLOSE = 0.05
+"""Windows closer than this share of the recording get one number between them. Derived: two digits on a phone."""
 
 
 def time_figure(
@@ -76,11 +78,17 @@ def time_figure(
         ),
     ]
     spans = [
-        Span(place.start, place.end, str(rank) if rank <= NUMBERED else "")
+        Span(place.start, place.end, str(rank) if rank <= NUMBERED and apart(places[:rank], view.time) else "")
         for rank, place in enumerate(places, start=1)
     ]
     spans += [Span(start, end, missing=True) for start, end, _ in view.left_out]
     return over_time((f"{prefix}/time", view.time), [panel for panel in panels if panel.curves], spans)
+
+
+def apart(places: Sequence[Place], time: Signal) -> bool:
+    """Whether the last of some windows is far enough from all others for a number of its own."""
+    *others, last = (0.5 * (place.start + place.end) for place in places)
+    return all(abs(last - other) > CLOSE * np.ptp(time) for other in others)
 
 
 def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Figure:
@@ -141,7 +149,7 @@ def law_figure(law: Characteristic) -> go.Figure:
     """A law of each model, with what the recordings say around the final one."""
     plot = go.Figure()
     if law.points is not None:
-        plot.add_trace(_points(*law.points, "recording, by the diagnosed model", "measured", 0.35))
+        plot.add_trace(_points(*law.points, "what the recording says", "measured", 0.35))
     for key, (x, y) in law.curves.items():
         plot.add_trace(_line(x, y, MEANINGS[key], key, {"nominal": "dot", "recalibrated": "dash"}.get(key, "solid")))
     plot.update_xaxes(title_text=law.x).update_yaxes(title_text=law.y)
@@ -159,8 +167,8 @@ def bars_figure(bars: Sequence[Bar]) -> go.Figure:
         meta={"colour": "final"},
     )
     plot = go.Figure(drawn)
-    plot.update_xaxes(title_text="what 95 % still allow, of the typical size", type="log")
-    plot.add_vline(x=1.0, line_dash="dot", line_color=COLOURS["nominal"])
+    plot.update_xaxes(title_text="largest size still allowed (95 %), as a share of a typical one", type="log")
+    plot.add_vline(x=1.0, line_dash="dot", line_color=COLOURS["nominal"], layer="below")
     plot.update_yaxes(autorange="reversed")
     return finished(plot, bars_height(bars))
 

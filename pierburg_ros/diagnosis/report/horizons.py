@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pierburg_ros.diagnosis.evidence.stretches import leading_to, restarted
+from pierburg_ros.diagnosis.evidence.stretches import forgotten, leading_to, restarted
 from pierburg_ros.diagnosis.schema import Horizon
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.run import Switch
@@ -25,7 +25,8 @@ def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
     """RMSE of the nominal, the recalibrated and the final model after each of `HORIZONS`, and over whole runs.
 
     On samples that test, that neither fit nor choice has used: each stands in the last part of a stretch. What a model
-    remembers (heat, play) starts afresh with each stretch.
+    remembers briefly (play, bristles) starts afresh with each stretch; one that remembers longer (heat) is not in a
+    state that a sensor of the angle shows, and is told over whole runs alone.
     """
     found = []
     for after in (*HORIZONS, math.inf):
@@ -33,7 +34,10 @@ def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
         # a recording may be too short for any stretch
         samples = stretches.test if stretches.runs else np.zeros(0, dtype=bool)
         errors = [
-            rms(stretches.residual(*model)[samples]) * data.noise if samples.any() else math.nan for model in models
+            rms(stretches.residual(model, switch)[samples]) * data.noise
+            if samples.any() and (forgotten(model.active_effects) or math.isinf(after))
+            else math.nan
+            for model, switch in models
         ]
         nominal, recalibrated, final = errors
         found.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))

@@ -18,6 +18,7 @@ from pierburg_ros.diagnosis.report.tried import OFF, title
 from pierburg_ros.diagnosis.result import Result, Tried, View
 from pierburg_ros.diagnosis.schema import Diagnosis
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.estimation.likelihood import TIED
 from pierburg_ros.pages.numbers import words
 from pierburg_ros.pages.over_time import OTHERS
 from pierburg_ros.pages.page import Plot, command, written
@@ -62,8 +63,11 @@ def page(
         "regimes": [regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
         "places": found,
         "tried": [tried_row(row, place) for place, row in enumerate(in_colours(exhibits.tried))],
+        "nothing_added": diagnosis.verdict == "consistent",
         "significant": SIGNIFICANT,
+        "tie": TIED,
         "shown": 12,  # rows of a table; the others are folded away
+        "few": 6,  # windows
         "over_time": time_plots(diagnosis, views, exhibits.tried),
         "residuals": residual_plots(exhibits.views, diagnosis.unit, diagnosis.motion),
         "laws": law_plots(result),
@@ -148,7 +152,11 @@ def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
         return []
     names = ["the whole" if each.after is None else f"{each.after:g} s" for each in horizons]
     errors = {key: [getattr(each, f"{key}_rmse") for each in horizons] for key in ("nominal", "recalibrated", "final")}
-    return [Plot("horizons", figures.horizons_figure(errors, names, diagnosis.unit), "Error of a prediction", 320)]
+    long = any(each.final_rmse is None for each in horizons if each.after is not None)
+    caption = "Error of a prediction" + (
+        "; heat is not measured, so the diagnosed model has one over the whole alone" if long else ""
+    )
+    return [Plot("horizons", figures.horizons_figure(errors, names, diagnosis.unit), caption, 320)]
 
 
 def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, str]]:

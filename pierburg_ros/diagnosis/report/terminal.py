@@ -1,4 +1,4 @@
-"""A diagnosis on the terminal: verdict, effects, drifts, errors, advice."""
+"""A diagnosis on the terminal: verdict, effects with their confidence, drifts, errors, advice."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.text import Text
 
 from pierburg_ros.diagnosis.schema import BaseParameter, Diagnosis, Estimate, RuledOut
 from pierburg_ros.pages.listing import Listing
-from pierburg_ros.pages.numbers import interval, ties, unit, value
+from pierburg_ros.pages.numbers import confidence, interval, ties, unit, value, words
 
 
 def shown(diagnosis: Diagnosis) -> Group:
@@ -21,6 +21,9 @@ def shown(diagnosis: Diagnosis) -> Group:
     parts: list[RenderableType] = [Panel(Text(diagnosis.summary), title=verdict, expand=False)]
     if diagnosis.effects or any(p.drifted for p in diagnosis.parameters.values()):
         parts.append(_changed(diagnosis))
+    if diagnosis.effects:
+        sure = (f"{words(effect.id)} {confidence(effect.confidence)}" for effect in diagnosis.effects)
+        parts.append(Text(f"Confidence: {', '.join(sure)}"))
     parts.append(_errors(diagnosis))
     if diagnosis.locations:
         places = "; ".join(f"{p.start:.1f} to {p.end:.1f} s ({p.regime})" for p in diagnosis.locations[:3])
@@ -63,7 +66,7 @@ def _row(name: str, estimate: Estimate | BaseParameter, alternatives: Sequence[S
 def _errors(diagnosis: Diagnosis) -> Listing:
     rows = [
         (
-            label,
+            f"RMSE [{diagnosis.unit}], {label}",
             *(
                 "" if each is None else f"{each:.4g}"
                 for each in (
@@ -76,4 +79,4 @@ def _errors(diagnosis: Diagnosis) -> Listing:
         )
         for label, errors in (("fitted data", diagnosis.fit.training), ("unseen data", diagnosis.fit.validation))
     ]
-    return Listing((f"RMSE [{diagnosis.unit}]", "as described", "re-estimated", "diagnosed", "noise"), rows)
+    return Listing(("error", "as described", "re-estimated", "diagnosed", "noise"), rows)

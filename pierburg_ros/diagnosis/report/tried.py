@@ -18,6 +18,10 @@ from pierburg_ros.pages.numbers import words
 DRAWN = 5
 """Rivals whose error is drawn. Work: each adds 0.1 MB to the page of a minute at 500 Hz; the others stand in the table
 alone."""
+NOMINAL = "nominal"
+"""Names the explanation that changes nothing."""
+RECALIBRATED = "parameters_re-estimated"
+"""Stands in the name of an explanation for all parameters that were re-estimated, of which there may be many."""
 OFF = "off-"
 """Begins the name of the final model with one of its effects switched off, then comes the effect's id."""
 
@@ -31,7 +35,16 @@ def title(row: Tried) -> str:
 def identifier(fit: Fit) -> str:
     """Effect ids and parameter names joined by +; `nominal` for none."""
     change = (f"{fit.explanation.changed}{WHEN}",) if fit.explanation.changed else ()
-    return "+".join((*fit.explanation.drifted, *change, *fit.explanation.effects)) or "nominal"
+    return "+".join((*fit.explanation.drifted, *change, *fit.explanation.effects)) or NOMINAL
+
+
+def shortened(fit: Fit, recalibrated: Fit) -> str:
+    """The identifier of an explanation, with one name for all parameters where it has those of the recalibrated one."""
+    own, drifted = recalibrated.explanation.drifted, fit.explanation.drifted
+    if len(own) < 2 or not set(own) <= set(drifted):
+        return identifier(fit)
+    others = [name for name in identifier(fit).split("+") if name not in own]
+    return "+".join([RECALIBRATED, *others])
 
 
 def distinct(found: Found, chosen: Fit) -> list[Fit]:
@@ -71,7 +84,8 @@ def rivals(found: Found, conclusion: Conclusion) -> list[tuple[Tried, Fit]]:
         if status[identifier(fit)] == "tied" or fit.explanation.size == size or fit.misfit < clear
     ]
     others.sort(key=lambda fit: (status[identifier(fit)] != "tied", fit.chi2))
-    rows = [(_row(found, conclusion, conclusion.final, "chosen", identifier(chosen)), conclusion.final)]
+    name = shortened(chosen, conclusion.recalibrated)
+    rows = [(_row(found, conclusion, conclusion.final, "chosen", name), conclusion.final)]
     for place, fit in enumerate(others):
         name = identifier(fit)
         row = _row(found, conclusion, fit, status[name], name)

@@ -7,11 +7,14 @@ from collections.abc import Mapping, Sequence
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
+from pierburg_ros.diagnosis.report.tried import NOMINAL, identifier
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.likelihood import TIED
 from pierburg_ros.pages import numbers
 
 SEPARATES = {
@@ -47,7 +50,7 @@ def effect_explanation(
     """Why the effect is named, with its numbers and what it cannot be told from."""
     declared = EFFECT[effect]
     values = ", ".join(quantity(name, estimate) for name, estimate in parameters.items())
-    text = f"{declared.sentence} It shows in {declared.shows_in}: {values}. {reason}"
+    text = f"{declared.sentence} Where it shows: {declared.shows_in}. Found: {values}. {reason}"
     if ties:
         text += f" These recordings cannot tell it from {_either(ties)}."
     return text
@@ -59,24 +62,30 @@ def reason(support: Support, unit: str) -> str:
         return by_recordings_left_out(support.left_out, unit)
     if support.weight is not None:
         return by_weight(support.weight)
-    return by_grid() if support.gain is None else by_evidence(support.gain)
+    if support.gain is None or support.without is None:
+        return by_grid()
+    return by_evidence(support.gain, identifier(support.without))
 
 
-def by_evidence(gain: float) -> str:
-    """Why an effect is named that the best explanation needs."""
+def by_evidence(gain: float, without: str) -> str:
+    """Why an effect is named that the best explanation needs; `without`: the name of the best one that lacks it."""
+    rival = "the model as described" if without == NOMINAL else numbers.words(without)
     return (
-        f"Without it the best explanation of the same size leaves {gain:,.0f} more in chi-squared, counted in "
-        "independent samples."
+        f"The best explanation without it that changes no more quantities is {rival}: it fits worse by "
+        f"{float(f'{gain:.3g}'):,.0f} in chi-squared; up to {TIED:g} would be a tie."
     )
 
 
 def by_weight(weight: Weight) -> str:
     """Why an effect is named although something remains."""
     seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
+    gone = (
+        "" if weight.explains is None else f" {100.0 * weight.explains:.0f} % of the mean squared error goes with it."
+    )
     return (
         f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
         f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
-        f"{seen}"
+        f"{seen}{gone}"
     )
 
 
@@ -100,8 +109,8 @@ def by_recordings_left_out(said: LeftOut, unit: str) -> str:
 def untestable(mark: float) -> str:
     """Why an effect cannot be seen."""
     return (
-        f"at a plausible strength it would change these recordings by a chi-squared of {mark:.2g} at most "
-        "once the other parameters are fitted again, which is within the noise"
+        "at a plausible strength it changes these recordings by less than their noise once the other parameters are "
+        f"fitted again (by {mark:.2g} in chi-squared; {SIGNIFICANT:g} would show)"
     )
 
 
@@ -194,7 +203,7 @@ def advice(
             steps.append(_separating(name, tie, stops))
     if verdict == "unexplained":
         steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
-    steps += [f"To see {numbers.words(item.id)}: {item.record}." for item in hidden]
+    steps += [f"To see {numbers.words(item.id)}, record: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
 
 

@@ -141,12 +141,13 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
 def _last_values(found: Search, chosen: Fit, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
-    Where events jump, other local minima are searched: a fit may reach the noise in one that is not the lowest.
+    Where events jump, other local minima are searched, unless the search has: a fit may reach the noise in one that is
+    not the lowest.
     """
     estimator = Estimator(with_validation(found.data), found.nominal)
     fit = estimator.fit(chosen.explanation, chosen.values)
     with workers(jobs, deadline) as pool:
-        if jumps(fit.explanation):
+        if jumps(fit.explanation) and not chosen.refined:
             fit = next(iter(pool.map(lambda fit: refined(estimator, fit), [fit])))
         return fit, estimates(estimator, fit, pool.map)
 

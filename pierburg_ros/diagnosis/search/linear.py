@@ -64,8 +64,8 @@ def largest_mark(estimator: Estimator, base: Fit, variant: Variant, starts: Sequ
     return max((float(mark @ mark) for mark in marks), default=0.0)
 
 
-def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list[dict[str, float]]:
-    """Values before and after a change of parameter `name`, and its time, that a linear step promises."""
+def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list[tuple[float, dict[str, float]]]:
+    """Values before and after a change of parameter `name`, and its time, by the chi2 that a linear step promises."""
     run = estimator.data.runs[0]
     time = run.time[run.train]
     probe = estimator.at(Explanation((*base.explanation.drifted, name), base.explanation.variants), base.values)
@@ -74,15 +74,15 @@ def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list
     before, weight = np.cumsum(slope * residual), np.cumsum(slope * slope) + 1e-9
     after, rest = before[-1] - before, weight[-1] - weight + 1e-9
     gain = before**2 / weight + after**2 / rest
-    starts: list[dict[str, float]] = []
+    starts: list[tuple[float, dict[str, float]]] = []
     for index in np.argsort(gain)[::-1]:
-        if all(abs(time[index] - start[name + WHEN]) > 0.05 * time[-1] for start in starts):
+        if all(abs(time[index] - start[name + WHEN]) > 0.05 * time[-1] for _, start in starts):
             shift = np.clip([-before[index] / weight[index], -after[index] / rest[index]], -0.5, 0.5)
             nominal = base.values[name]
-            starts.append({
+            starts.append((base.chi2 - float(gain[index]), {
                 **base.values, name: nominal * float(np.exp(shift[0])),
                 name + AFTER: nominal * float(np.exp(shift[1])), name + WHEN: float(time[index]),
-            })  # fmt: skip
+            }))  # fmt: skip
         if len(starts) == most:
             break
     return starts

@@ -21,8 +21,8 @@ BEHIND = 3.0
 """Error over that of the best explanation of the same size from which a candidate is far behind. Measured: with it 22
 of n = 22 practice recordings keep their verdict; other values were not tried."""
 NEAR = 1.3
-"""Error over that of the best candidate up to which one gets a whole fit, besides the best few. Work: a larger value
-costs whole fits; not varied."""
+"""Error over that of the best candidate up to which one gets a whole fit, besides the best few, and a change is dated
+anew. Work: a larger value costs whole fits; not varied. The change that was there led before it was dated (n = 4)."""
 FINISHED = 4
 """How many of the best get a whole fit in any case. Work: each is a whole fit; not varied."""
 
@@ -46,13 +46,17 @@ def winners(
     """Brief fits of the candidates that deserve a whole one, the best first.
 
     `best` is the error over noise of the best explanation of the same size known, by the samples it was fitted to.
-    `most` ends the second round with so many.
+    `most` ends the second round with so many. Of changes those near the best are then dated anew, unless it accounts
+    for all.
     """
     firsts = [entry for entries in pool.map(lambda each: _first(each, progress), candidates) for entry in entries]
     kept = _not_behind(firsts, best)
     if most is not None:
         kept = _best_of_each(kept)[:most]
     entries = _best_of_each(list(pool.map(lambda entry: _second(entry, progress), kept)))
+    if entries and not adequate(entries[0].fit):
+        near = NEAR * entries[0].fit.ratio
+        entries = _best_of_each(list(pool.map(lambda entry: _dated(entry, near), entries)))
     nearest = entries[0].fit.ratio if entries else 0.0
     return [entry.fit for rank, entry in enumerate(entries) if _deserves_whole_fit(entry, rank, nearest)]
 
@@ -72,8 +76,14 @@ def _second(entry: Entry, progress: Callable[[str], None]) -> Entry:
     if candidate.jumps and not adequate(fits[0]):
         forgiving = estimator.fit(explanation, entry.start, ROUNDS, forgiving=True)
         fits.append(estimator.fit(explanation, forgiving.values, ROUNDS))
-    best = min(fits, key=lambda fit: fit.ratio)
-    return replace(entry, fit=redated(estimator, best) if candidate.changes else best)
+    return replace(entry, fit=min(fits, key=lambda fit: fit.ratio))
+
+
+def _dated(entry: Entry, near: float) -> Entry:
+    """The entry with the moment of its change, if it has one and an error below `near`, looked for around it."""
+    if not entry.candidate.changes or entry.fit.ratio >= near:
+        return entry
+    return replace(entry, fit=redated(entry.candidate.estimator, entry.fit))
 
 
 def _not_behind(entries: Sequence[Entry], best: Mapping[Estimator, float]) -> list[Entry]:

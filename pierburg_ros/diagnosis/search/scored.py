@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -15,13 +18,23 @@ from pierburg_ros.plant import Model
 class Scored:
     """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two.
 
-    `unseen` is the same of the samples that validate, when those that train are known.
+    `unseen` is the same of the samples that validate, when those that train are known. `errors` are the mean squares
+    [noise^2] of the residual on those that train and on those that validate.
     """
 
     fit: Fit
     discrepancy: Discrepancy
     cost: float
     unseen: float = 0.0
+    errors: tuple[float, float] = (0.0, 0.0)
+
+    def explains(self, without: Scored) -> float:
+        """By which share the mean square of the error is smaller than `without` what this fit has more.
+
+        On samples that train or on those that validate, whichever gain less.
+        """
+        pairs = zip(self.errors, without.errors, strict=True)
+        return 1.0 - max(own / max(other, 1e-300) for own, other in pairs)
 
     @property
     def left(self) -> float:
@@ -36,7 +49,13 @@ def scored(data: Data, fit: Fit) -> Scored:
     discrepancy = kalman.most_likely(residual)
     cost = evidence(kalman.filtered(discrepancy), residual)
     both = evidence(Kalman(data, data.train | data.validation).filtered(discrepancy), residual)
-    return Scored(fit, discrepancy, cost, both - cost)
+    errors = _mean_square(residual[data.train]), _mean_square(residual[data.validation])
+    return Scored(fit, discrepancy, cost, both - cost, errors)
+
+
+def _mean_square(residual: Signal) -> float:
+    """Mean square of a residual, 0 where there are no samples."""
+    return float(np.mean(np.square(residual))) if residual.size else 0.0
 
 
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -19,6 +19,8 @@ from pierburg_ros.estimation.explanation import Explanation, Variant
 LATE = 0.5
 """Excess of squared error in a first fit, as a share of the whole, below which that fit takes in everything. Derived:
 less than half of what is left to explain would be seen."""
+Promised = tuple[float, dict[str, float]]
+"""The chi2 that a linear step promises, and the start that it comes to."""
 STARTS_TRIED = 2
 """Starts from which a first fit is taken. Work: each costs one brief fit; not varied."""
 
@@ -95,26 +97,32 @@ def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Cand
     """A change in the middle of the recording on top of `base`, at the moments that gain most."""
     name = explanation.changed
     assert name is not None
-    starts = change_starts(estimator, base, name, STARTS_TRIED)
-    return Candidate(explanation, name, estimator, base, tuple(starts))
+    starts = _worthwhile(change_starts(estimator, base, name, STARTS_TRIED), base)
+    return Candidate(explanation, name, estimator, base, tuple(start for _, start in starts))
 
 
 def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: Fit) -> Candidate:
     """One more drift on top of `base`."""
     promise = promised_by_drift(estimator.at(explanation, base.values))
-    return Candidate(explanation, name, estimator, base, (base.values,), _error(promise, base))
+    starts = _worthwhile([(promise, base.values)], base)
+    return Candidate(explanation, name, estimator, base, tuple(start for _, start in starts), _error(promise, base))
 
 
 def _acting(
     explanation: Explanation, variant: Variant, starts: list[Start], estimator: Estimator, base: Fit
 ) -> Candidate:
     """One more effect on top of `base`, from the starts that promise most, if any does."""
-    found = promised(estimator, base, variant, starts)[:STARTS_TRIED]
-    if adequate(base):
-        found = [pair for pair in found if base.chi2 - pair[0] > PROMISING]
+    found = _worthwhile(promised(estimator, base, variant, starts)[:STARTS_TRIED], base)
     promise = min((chi2 for chi2, _ in found), default=np.inf)
     chosen = tuple({**base.values, **start} for _, start in found)
     return Candidate(explanation, variant, estimator, base, chosen, _error(promise, base))
+
+
+def _worthwhile(starts: Sequence[Promised], base: Fit) -> Sequence[Promised]:
+    """The starts that promise a noticeable gain where `base` leaves nothing, otherwise all."""
+    if not adequate(base):
+        return starts
+    return [(chi2, start) for chi2, start in starts if base.chi2 - chi2 > PROMISING]
 
 
 def _error(chi2: float, fit: Fit) -> float:

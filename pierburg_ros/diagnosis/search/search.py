@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -99,17 +100,18 @@ class Search:
         size = best.explanation.size
         seeds = self._seeds(best)
         if len(seeds) > 1:
+            had_resigned = self.resigned
             self._fit_most_promising(seeds)
-            if self._complete(size + 1):
+            if self._complete(size + 1) or self._likeliest_accounts_for_all():
                 return
-            if not self.resigned:
+            if not had_resigned:
                 self.refine(self.of_size(size))
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
             seeds = self._seeds(best)
             self._fit_ripples(seeds)
-            if not self._complete(size + 1) and self._remains():
+            if self.resigned:
                 return
         for seed in seeds:
             if self._complete(size + 1) or self.exhausted:
@@ -121,11 +123,14 @@ class Search:
     def _wants_refinement(self, best: Fit, size: int) -> bool:
         """Whether fits of a `size` grown from the `best` smaller one should be refined now.
 
-        Single quantities wait until a pair of them has been tried, unless none betters the nominal model.
+        Single quantities wait until a pair of them has been tried, unless none betters the nominal model, or the best
+        may only have stopped too early.
         """
-        if adequate(best) or self._complete(size):
+        leading = self.best_of_size(size)
+        if leading is None or adequate(best) or complete(leading):
             return False
-        return size > 1 or self.preferred(1).explanation.size == 0
+        early = jumps(leading.explanation) and leading.ratio < NEARLY
+        return size > 1 or early or self.preferred(1).explanation.size == 0
 
     def _seeds(self, best: Fit) -> list[Fit]:
         """Fits of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
@@ -147,13 +152,13 @@ class Search:
         candidates = [candidate for seed in seeds for candidate in self._screened(seed)]
         self._race(most_promising(candidates, self.beam.ahead), most=self.beam.ahead // 3)
 
-    def _remains(self) -> bool:
-        """Whether something is left by what is likeliest beside a remainder, or all is accounted for: nothing to grow.
+    def _likeliest_accounts_for_all(self) -> bool:
+        """Whether what is likeliest beside a remainder leaves nothing, fitted as if there were none; asked once.
 
-        What is likeliest beside a remainder is fitted as if there were none: often it then accounts for all.
+        Where it leaves too much, a search that resigns does so.
         """
         if self.beside is not None:
-            return self.resigned
+            return False
         self.beside = supported(self.data, self.nominal, self.pool, self.progress)
         reached = self.beside.reached.fit
         if reached.explanation.size <= self.beam.depth:
@@ -162,11 +167,13 @@ class Search:
             if adequate(self.fits[reached.explanation]):
                 return True
         self.resigned = self.beam.resigns and not self.beside.open
-        return self.resigned
+        return False
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""
         for variant, ripple in ripples(self.whole):
+            if self._complete(seeds[0].explanation.size + 1):
+                return
             self.progress(f"{variant.label}, through stretches")
             grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
             bases = {explanation: seed for explanation, seed in grown if explanation is not None}
@@ -256,7 +263,8 @@ class Search:
         """The preferred explanation after each of its parts has been fitted again from its values.
 
         A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins: from the
-        lowest of the larger one's minima, since from beside it the smaller one may stop again.
+        lowest of the larger one's minima, since from beside it the smaller one may stop again. So does one of its size
+        with a drift in the place of an effect.
         """
         best = self.preferred()
         while True:
@@ -267,10 +275,21 @@ class Search:
                 smaller = self.add(without(best.explanation, quantity), best.values)
                 if _near(smaller, best):
                     self._refine(smaller)
+            simpler = _simpler(best.explanation, self.drifts)
+            self.refine(list(self.pool.map(partial(self.add, start=best.values), simpler)))
             kept = self.preferred()
             if kept.explanation.size >= best.explanation.size:
                 return kept
             best = kept
+
+
+def _simpler(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
+    """An explanation with a drift in the place of one of its effects, where another effect stays."""
+    if len(explanation.variants) < 2:
+        return []
+    rests = (without(explanation, variant) for variant in explanation.variants)
+    swapped = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
+    return [found for found in dict.fromkeys(canonical(each, drifts) for each in swapped) if found is not None]
 
 
 def _near(fit: Fit, best: Fit) -> bool:

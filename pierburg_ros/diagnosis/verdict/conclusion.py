@@ -29,13 +29,14 @@ Chosen: eight bits, fewer than converters in use have; finer steps are far below
 class Support:
     """How far an effect is believed, between 0 and 1, and the numbers that speak for it.
 
-    `gain` is what the best explanation without it lacks in chi2, in effective samples; `left_out` what recordings left
-    out of the fit say; `weight` what it carries where something remains. All are None where the effect is seen in the
-    samples themselves.
+    `without` is the best explanation without it, of as many quantities or fewer, and `gain` what that lacks in chi2, in
+    effective samples; `left_out` what recordings left out of the fit say; `weight` what it carries where something
+    remains. All are None where the effect is seen in the samples themselves.
     """
 
     confidence: float
     gain: float | None = None
+    without: Fit | None = None
     left_out: LeftOut | None = None
     weight: Weight | None = None
 
@@ -74,7 +75,8 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
         if step:
             base, supports[ROUNDING.id] = _rounded(base, step), Support(1.0)
             shape = shape and replace(shape, model=shape.model.with_values({STEP: step}))
-        return Conclusion(verdict, base, base, nominal, found.recalibrated, [], rest.estimates, supports, shape)
+        ties = _tied(base, rest.weights)
+        return Conclusion(verdict, base, base, nominal, found.recalibrated, ties, rest.estimates, supports, shape)
     chosen, final = found.chosen, found.final
     supports = {variant.effect: _by_evidence(found, variant) for variant in chosen.explanation.variants}
     if step := found.data.step:
@@ -90,6 +92,12 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
         found.estimates,
         supports,
     )
+
+
+def _tied(base: Fit, weights: Mapping[str, Weight]) -> list[Alternative]:
+    """What may stand for each effect of `base` beside what remains."""
+    own = (variant for variant in base.explanation.variants if variant.effect in weights)
+    return [Alternative(variant, (name,)) for variant in own for name in weights[variant.effect].instead]
 
 
 def verdict_on(chosen: Fit) -> Verdict:
@@ -123,15 +131,16 @@ def _by_evidence(found: Found, variant: Variant) -> Support:
     """
     chosen = found.chosen
     size, repetition = chosen.explanation.size, chosen.repetition
-    weights, lacks = {True: 0.0, False: 0.0}, math.inf
+    weights, others = {True: 0.0, False: 0.0}, []
     for fit in found.fits.values():
         acts = variant.effect in fit.explanation.effects
         lag = (fit.misfit - chosen.misfit) / repetition
         if fit.explanation.size == size:
             weights[acts] += math.exp(-0.5 * min(max(lag, 0.0), 1400.0))
         if fit.explanation.size <= size and not acts:
-            lacks = min(lacks, lag)
-    return Support(weights[True] / (weights[True] + weights[False]), gain=lacks)
+            others.append((lag, fit))
+    lacks, without = min(others, key=lambda other: other[0])
+    return Support(weights[True] / (weights[True] + weights[False]), gain=lacks, without=without)
 
 
 def _by_recordings(left_out: LeftOut) -> Support:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 from pierburg_ros.actuators.actuator import UNITS
-from pierburg_ros.actuators.description import needed_parameters
+from pierburg_ros.actuators.description import MAGNITUDES, POSITIVE, needed_parameters
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError
 
@@ -36,23 +38,36 @@ KINDS = (
     Question("stops", "Its stops, lower and upper [rad, or m], or nothing where there are none", (), ""),
 )
 
-Ask = Callable[[Question], str]
+Ask = Callable[[Question, str], str]
+"""Gives the answer to a question; the text says what was wrong with the answer before, if there was one."""
+Used = TypeVar("Used")
 
 
 def answered(ask: Ask) -> dict[str, Any]:
-    """The content of a description, from the answers to questions; InputError where one cannot be used."""
-    content: dict[str, Any] = {question.key: _checked(question, ask(question)) for question in KINDS}
+    """The content of a description, from the answers to questions; each is asked again until it can be used."""
+    content: dict[str, Any] = {question.key: _used(question, partial(_checked, question), ask) for question in KINDS}
     stops = content.pop("stops")
     if stops:
-        content["stops"] = _stops(stops)
+        content["stops"] = stops
     parameters = {}
     for name in needed_parameters(content["drive"], content["load"], content["sensor"]):
         unit, meaning = UNITS[name]
-        shown = unit_of(unit, content["motion"])
-        nominal = number(name, ask(Question(name, f"{name} [{shown}], {meaning}")))
-        origin = ask(Question(f"{name}.origin", "  where that number comes from", (), "guess"))
+        question = Question(name, f"{name} [{unit_of(unit, content['motion'])}], {meaning}")
+        nominal = _used(question, partial(_nominal, name), ask)
+        origin = ask(Question(f"{name}.origin", "  where that number comes from", (), "guess"), "")
         parameters[name] = declared(name, nominal, origin)
     return {**content, "parameters": parameters}
+
+
+def _used(question: Question, use: Callable[[str], Used], ask: Ask) -> Used:
+    """What `use` makes of the first answer that it does not refuse."""
+    problem = ""
+    while True:
+        answer = ask(question, problem)
+        try:
+            return use(answer)
+        except InputError as error:
+            problem = str(error)
 
 
 def declared(name: str, nominal: float, origin: str) -> dict[str, Any]:
@@ -61,26 +76,45 @@ def declared(name: str, nominal: float, origin: str) -> dict[str, Any]:
     low = nominal / RANGE if nominal > 0.0 else -size
     if name in ("spring_stiffness", "coulomb_friction", "supply_voltage", "gravity_torque", "spring_preload"):
         low = min(nominal, 0.0)
-    entry: dict[str, Any] = {"nominal": nominal, "minimum": low, "maximum": size, "origin": origin}
+    ends = {"minimum": float(f"{low:.6g}"), "maximum": float(f"{size:.6g}")}
+    entry: dict[str, Any] = {"nominal": nominal, **ends, "origin": origin}
     return entry | ({"free": False} if name in FIXED else {})
 
 
 def number(name: str, text: str) -> float:
     """The number in an answer; InputError where it holds none."""
     try:
-        return float(text.replace(",", "."))
+        value = float(text.replace(",", "."))
     except ValueError:
-        raise InputError(f"{name}: found {text!r}, expected a number. Ask its data sheet, or guess.") from None
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{name}: found {text!r}, expected a number alone. Ask its data sheet, or guess.")
+    return value
 
 
-def _checked(question: Question, answer: str) -> str:
+def _nominal(name: str, text: str) -> float:
+    """The number of a parameter; InputError where no actuator has it."""
+    value = number(name, text)
+    if value <= 0.0 and name in POSITIVE | {"supply_voltage"}:
+        raise InputError(f"{name}: found {text!r}, expected a number above 0. Ask its data sheet, or guess.")
+    if name in MAGNITUDES and value < 0.0:
+        raise InputError(f"{name}: found {text!r}, expected 0 or more. Give its magnitude.")
+    return value
+
+
+def _checked(question: Question, answer: str) -> str | Mapping[str, float]:
     if question.choices and answer not in question.choices:
         raise InputError(f"{question.key}: found {answer!r}, expected one of {', '.join(question.choices)}.")
-    return answer
+    return _stops(answer) if question.key == "stops" else answer
 
 
 def _stops(answer: str) -> Mapping[str, float]:
-    ends = answer.replace(",", " ").split()
+    ends = answer.replace(";", " ").split()
+    if not ends:
+        return {}
     if len(ends) != 2:
         raise InputError(f"stops: found {answer!r}, expected two numbers, the lower and the upper stop.")
-    return {"lower": number("stops", ends[0]), "upper": number("stops", ends[1])}
+    lower, upper = (number("stops", end.strip(",")) for end in ends)
+    if lower >= upper:
+        raise InputError(f"stops: found {answer!r}, expected the lower stop first and the upper one above it.")
+    return {"lower": lower, "upper": upper}

@@ -28,7 +28,8 @@ def alike(recording: Recording) -> str:
     except KeyError:
         raise InputError(
             f"{recording.name} holds {recording.input} and {recording.quantity}, and no shipped actuator is of that"
-            " kind; expected --actuator FILE to start from."
+            " kind; expected --like FILE, a description to start from. Or answer its questions, without"
+            " --from-recording."
         ) from None
 
 

@@ -24,6 +24,7 @@ from pierburg_ros.proof.real.machine import Machine
 from pierburg_ros.proof.real.score import Score, score
 from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
 from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial, Truth, added
+from pierburg_ros.proof.real.visibility import visibility
 from pierburg_ros.proof.seal import opened, seal
 from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST, RESULT, diagnose, finite, result
 from pierburg_ros.recording import Recording, read_recording
@@ -144,16 +145,17 @@ def changed(trial: Trial, bench: Bench) -> tuple[Recording, Model, Truth]:
         if trial.level not in WRONG:
             raise CannotPutIn(f"a number is not told wrong at the level {trial.level}")
         true, factor = model.values[trial.kind], WRONG[trial.level]
-        return recording, model.with_values({trial.kind: factor * true}), Truth(trial, factor, {trial.kind: true})
+        wrong = model.with_values({trial.kind: factor * true})
+        seen = visibility(recording, model, wrong, trial.kind)
+        return recording, wrong, Truth(trial, factor, {trial.kind: true}, visibility=seen)
     size, limit = (strength(trial.kind, level, model, ruled_out) for level in (trial.level, "limit"))
     if size is None:
         raise CannotPutIn(f"the untouched recording gives no level {trial.level}")
     values = values_at(trial.kind, size, model)
-    return (
-        with_effect(recording, trial.kind, values, model),
-        model,
-        Truth(trial, size, added(trial.kind, values, model), limit),
-    )
+    both = added(trial.kind, values, model)
+    more = model.with_values({f"{trial.kind}.{name}": value for name, value in values.items()} | both)
+    seen = visibility(recording, model, more, next(iter(both)))
+    return with_effect(recording, trial.kind, values, model), model, Truth(trial, size, both, limit, seen)
 
 
 def conduct(trial: Trial, bench: Bench) -> dict[str, Any] | None:

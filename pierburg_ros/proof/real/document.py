@@ -56,17 +56,31 @@ def has_more(result: Result) -> bool:
     return bool(result["beside"])
 
 
+COLUMNS: Mapping[str, Answer] = {
+    "shown": lambda result: bool(result["shown"]),
+    "named": is_named,
+    "of those shown": lambda result: is_named(result) if result["shown"] else None,
+    "value within 25 %": has_value,
+    "another effect beside": has_more,
+}
+"""What is counted of each kind and level."""
+
+
 def headline(run: Run) -> dict[str, Share]:
     """The figures by which the diagnosis is judged on real recordings."""
     plain, wrong = run.of("plain"), run.of("plain", effects=False)
+    shown, wrong_shown = ([result for result in of if result["shown"]] for of in (plain, wrong))
     return {
-        "Effect put in at plain strength: named": share(plain, is_named),
+        "Effect put in at plain strength, and shown: named": share(shown, is_named),
+        "of these, value within 25 % (shown)": share(shown, has_value),
+        "Effect put in at plain strength, shown or not: named": share(plain, is_named),
         "of these, value within 25 %": share(plain, has_value),
         "not named, but among the explanations reported as equal": share(
             plain, lambda r: None if r["named"] or r["already"] else r["tied"]
         ),
         "given another effect beside what the untouched recording is given": share(plain, has_more),
-        "Number of the description 1.3 times too high: its drift named": share(wrong, is_named),
+        "Number of the description 1.3 times too high, and shown: its drift named": share(wrong_shown, is_named),
+        "Number of the description 1.3 times too high, shown or not: its drift named": share(wrong, is_named),
         "of these, value within 25 % of that in the model of the other recordings": share(wrong, has_value),
         "Untouched recordings given one more effect (false alarms)": share(run.kind(UNTOUCHED), has_more),
         "Logged supply voltage withheld: given another effect": share(run.kind(WITHHELD), has_more),
@@ -84,10 +98,8 @@ def by_kind(run: Run) -> str:
             of = [result for result in run.kind(kind) if result["level"] == level and result["true"] is not None]
             if of:
                 strengths = between([r["strength"] for r in of]) + ("" if kind in EFFECT else " times")
-                rows.append(
-                    (words(kind), level, strengths, *(share(of, each) for each in (is_named, has_value, has_more)))
-                )
-    head = ("put in", "level", "strength", "named", "value within 25 %", "another effect beside")
+                rows.append((words(kind), level, strengths, *(share(of, each) for each in COLUMNS.values())))
+    head = ("put in", "level", "strength", *COLUMNS)
     return table(head, rows) if rows else "Nothing was put in."
 
 
@@ -105,13 +117,14 @@ def each(run: Run) -> str:
             r["name"],
             "-" if r["strength"] is None else f"{r['strength']:.3g}",
             "-" if r["limit"] is None else f"{r['limit']:.3g}",
+            "-" if r["shown"] is None else "yes" if r["shown"] else "no",
             "-" if r["true"] is None else f"{r['true']:.3g}",
             "-" if r["found"] is None else f"{r['found']:.3g}",
             answered(r),
         )
         for r in run.results
     ]
-    return table(("trial", "put in", "ruled out from", "true", "found", "answered"), rows)
+    return table(("trial", "put in", "ruled out from", "shown", "true", "found", "answered"), rows)
 
 
 def answered(result: Result) -> str:

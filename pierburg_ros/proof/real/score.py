@@ -17,10 +17,10 @@ VALUE_TOLERANCE = 0.25
 class Score:
     """What a trial came to.
 
-    `named` counts an effect by its id and a wrong number by its drift; `tied`: it is among the explanations reported
-    as equal. `already`: the untouched recording is given the same name against the same model, so that finding it again
-    proves nothing. `beside` are names that neither the trial nor the untouched recording has; `refused` what was said
-    of the signals in place of a verdict.
+    `named` counts an effect by its id and a wrong number by its drift. `tied`: it is among the explanations reported as
+    equal. `already`: the untouched recording is given the same name against the same model, so that finding it again
+    proves nothing. `shown`: the recording can show it, None where nothing is looked for. `beside` are names that
+    neither the trial nor the untouched recording has; `refused` what was said of the signals in place of a verdict.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Score:
     named: bool
     tied: bool
     already: bool
+    shown: bool | None
     true: float | None
     found: float | None
     within: bool | None
@@ -95,6 +96,7 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
         named=bool(true) and is_named(effects, drifted),
         tied=bool(true) and any({kind, *true} & tie for tie in alternatives(diagnosis)),
         already=bool(true) and is_named(before, drifted_before),
+        shown=truth["shown"],
         true=expected,
         found=found,
         within=within,

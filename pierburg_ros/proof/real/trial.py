@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.plant import Model
+from pierburg_ros.proof.real.visibility import Visibility
 
 UNTOUCHED = "untouched"
 WITHHELD = "withheld_supply"
@@ -43,13 +44,15 @@ class Truth:
     """What was changed: the `strength` of an effect that was put in, or a factor on a number of the description.
 
     `true` is the value by dotted name that the diagnosis should come to: what is put in adds to what the model of the
-    other recordings has of the effect already, and a wrong number is right where that model has it.
+    other recordings has of the effect already, and a wrong number is right where that model has it. `visibility` says
+    how far that stands out of what remains there, None where nothing is looked for.
     """
 
     trial: Trial
     strength: float | None = None
     true: Mapping[str, float] = field(default_factory=dict)
     limit: float | None = None
+    visibility: Visibility | None = None
 
     def label(self) -> dict[str, Any]:
         """As it is sealed."""
@@ -63,6 +66,8 @@ class Truth:
             "strength": self.strength,
             "limit": self.limit,
             "true": dict(self.true),
+            "shown": self.visibility and self.visibility.shown,
+            "visibility": self.visibility and asdict(self.visibility),
         }
 
 

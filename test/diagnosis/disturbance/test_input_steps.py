@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.diagnosis.disturbance.rounding import between_steps
-from pierburg_ros.plant import Inputs
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.diagnosis.disturbance.rounding import Rounding, between_steps
+from pierburg_ros.diagnosis.search.selection import allowance
+from pierburg_ros.estimation.data import data_of
+from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording
 
 TIME = np.arange(400) * 0.01
@@ -20,3 +26,17 @@ def test_an_input_is_off_by_half_a_step_at_most(driven_by, largest):
     off = np.abs(between - logged)
     assert np.max(off) <= 0.5 * step + 1e-12 and np.mean(off) > 0.15 * step
     assert driven_by != "duty" or np.max(np.abs(between)) <= 1.0
+
+
+def test_what_steps_may_do_counts_as_noise_and_as_no_evidence():
+    valve = Model.nominal(read_actuator("pierburg"))
+    times = np.arange(3000) / 500.0
+    recording = synthetic_recording(valve, times, np.repeat(np.random.default_rng(0).uniform(0.0, 0.3, 15), 200))
+    data = data_of([recording], valve)
+    rounding = Rounding(recording, 0.01, size=4.0 * data.noise)
+    apart = rounding.kept_apart(data)
+    assert apart.noise == pytest.approx(np.sqrt(17.0) * data.noise)
+    fit = Estimator(apart, valve).fit(Explanation())
+    assert allowance(fit, apart) == pytest.approx(16.0 / 17.0 * times.size, rel=1e-3)
+    settled, unsettled = (rounding.said(data, unsettled=each).remarks[-1] for each in (False, True))
+    assert "which counts as noise" in settled and "nothing can be concluded" in unsettled

@@ -2,12 +2,16 @@
 
 import numpy as np
 import pytest
+from support.fits import made_up
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.report.allowed import bars
 from pierburg_ros.diagnosis.report.characteristics import friction_torque, load_torque
-from pierburg_ros.diagnosis.report.places import places
+from pierburg_ros.diagnosis.report.figures import apart
+from pierburg_ros.diagnosis.report.places import Place, places
+from pierburg_ros.diagnosis.report.tried import shortened
 from pierburg_ros.diagnosis.schema import Location, RuledOut
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 
 NOMINAL = Model.nominal(read_actuator("pierburg"))
@@ -32,6 +36,29 @@ def test_limits_stand_beside_typical_sizes():
     # as one meets it: play of 0.015 rad, and breaking loose at 40 % more than sliding
     assert [bar.share for bar in found] == pytest.approx([0.1, 0.5], rel=0.01)
     assert found[0].text == "below 0.0015 rad"
+
+
+def test_all_parameters_re_estimated_have_one_name():
+    every = ("armature_resistance", "spring_preload", "spring_stiffness")
+    recalibrated = made_up(Explanation(every), 3.0, NOMINAL)
+    sagging = made_up(Explanation(every, (Variant("supply_sag", ("source_resistance",)),)), 2.0, NOMINAL)
+    single = made_up(Explanation(every[:1]), 3.0, NOMINAL)
+    assert shortened(sagging, recalibrated) == "parameters_re-estimated+supply_sag"
+    assert shortened(recalibrated, recalibrated) == "parameters_re-estimated"
+    assert shortened(single, recalibrated) == shortened(single, single) == "armature_resistance"
+
+
+def test_two_limits_of_one_effect_have_a_bar_each():
+    """Bars of one name would stand one behind the other."""
+    both = [RuledOut(id="external_load", parameter=name, below=0.001, unit="N.m") for name in ("torque", "amplitude")]
+    assert {bar.name for bar in bars(both, NOMINAL)} == {"external load: torque", "external load: amplitude"}
+
+
+def test_numbers_of_windows_keep_apart():
+    time = np.linspace(0.0, 60.0, 10)
+    near, far = Place(10.0, 10.5, 0.3, ""), Place(20.0, 20.5, 0.2, "")
+    assert apart([near], time) and apart([near, far], time)
+    assert not apart([near, far, Place(11.0, 11.5, 0.1, "")], time)
 
 
 def test_friction_over_velocity_is_the_stribeck_curve():

@@ -1,6 +1,8 @@
 """Why an effect is believed, and what to record next, in words with their numbers."""
 
 import pytest
+from support.fits import made_up
+from support.recordings import NOMINAL
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
@@ -8,7 +10,9 @@ from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summa
 from pierburg_ros.diagnosis.schema import BaseParameter, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
+from pierburg_ros.estimation.explanation import Explanation, Variant
 
+RIVAL = made_up(Explanation(("coulomb_friction",), (Variant("backlash", ("gap",)),)), 1.2, NOMINAL)
 TIED = Effect(
     id="viscous_friction",
     confidence=0.99,
@@ -21,13 +25,17 @@ TIED = Effect(
 @pytest.mark.parametrize(
     ("support", "words"),
     [
-        (Support(0.99, gain=812.34), "leaves 812 more in chi-squared"),
+        (
+            Support(0.99, gain=812.34, without=RIVAL),
+            "quantities is coulomb friction + backlash: it fits worse by 812 in",
+        ),
         (Support(1.0), "All samples lie on this grid"),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
+        (Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)), "gain 90. 65 % of the mean squared error goes"),
     ],
-    ids=["evidence", "grid", "some recordings", "all recordings", "beside what remains"],
+    ids=["evidence", "grid", "some recordings", "all recordings", "beside what remains", "of the error"],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
@@ -55,7 +63,7 @@ def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
     assert steps[0] == limit.record
     assert steps[1].startswith("To tell viscous friction from armature resistance and torque constant: ")
     assert "measure the motor's resistance at standstill" in steps[1] and "`free: false`" in steps[1]
-    assert steps[2] == "To see backlash: duty below 0."
+    assert steps[2] == "To see backlash, record: duty below 0."
     assert len(steps) == 3
 
 

@@ -70,8 +70,9 @@ def test_a_change_is_dated_by_its_slope() -> None:
     noisy = hall + 0.003 * np.random.default_rng(2).standard_normal(hall.size)
     made = Recording("changed.mcap", "hall_voltage", plain.time, noisy, plain.command)
     estimator = Estimator(data_on(made), NOMINAL)
-    starts = change_starts(estimator, estimator.at(NOTHING), "armature_resistance", 2)
-    assert len(starts) == 2
+    plainly = estimator.at(NOTHING)
+    promises, starts = zip(*change_starts(estimator, plainly, "armature_resistance", 2), strict=True)
+    assert promises[0] < promises[1] < plainly.chi2
     assert starts[0]["armature_resistance" + WHEN] == pytest.approx(7.0, abs=0.7)
     assert starts[0]["armature_resistance"] == pytest.approx(NOMINAL.values["armature_resistance"], rel=0.02)
     assert starts[0]["armature_resistance" + AFTER] == pytest.approx(4.4, rel=0.05)

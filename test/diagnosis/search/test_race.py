@@ -8,6 +8,7 @@ import pytest
 from support.fits import made_up
 from support.recordings import NOMINAL
 
+from pierburg_ros.diagnosis.search import race as race_of
 from pierburg_ros.diagnosis.search.race import ROUNDS, winners
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.estimation.estimator import Fit
@@ -131,6 +132,16 @@ def test_where_events_jump_a_fit_that_forgives_may_lead_further() -> None:
     smooth = by_effect(sensor_lag=3.0)
     race([candidate(LAG, smooth)])
     assert not any(forgiving for _, _, forgiving in smooth.asked)
+
+
+@pytest.mark.parametrize(("leader", "dated"), [(2.0, True), (1.5, False), (1.02, False)])
+def test_a_change_near_the_best_is_dated_anew_unless_that_accounts_for_all(monkeypatch, leader, dated) -> None:
+    """A change with an error of 2.2 that dating takes to 0.99."""
+    change = Explanation(changed="spring_stiffness")
+    track = Track(lambda explanation, _start, _forgiving: 2.2 if explanation == change else leader)
+    monkeypatch.setattr(race_of, "redated", lambda _, fit: made_up(fit.explanation, 0.99, NOMINAL))
+    running = [candidate(LAG, track), Candidate(change, "spring_stiffness", track, LOST, ({},))]  # type: ignore[arg-type]
+    assert race(running) == ([change.label, "sensor_lag"] if dated else ["sensor_lag", change.label])
 
 
 def test_without_prospects_nobody_wins() -> None:

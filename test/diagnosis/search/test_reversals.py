@@ -7,11 +7,13 @@ import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.reversals import directions, play_at_reversals
+from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.selection import PROMISING
+from pierburg_ros.diagnosis.search.supported import Supported, with_play
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.proof.real.channels import with_effect
 
 WIDTH = 0.05
@@ -50,3 +52,16 @@ def test_a_model_with_such_a_play_is_asked_for_no_other():
     data = measured(0.0)
     own = NOMINAL.with_values({"sensor_hysteresis.width": WIDTH})
     assert play_at_reversals(data, Estimator(data, own).at(Explanation())) is None
+
+
+def test_a_play_is_named_only_where_the_likeliest_model_does_not_take_it_away():
+    """What stands in for it may not be named: here it is a model that has the play from the start."""
+    data = measured(WIDTH)
+    estimator, own = Estimator(data, NOMINAL), {"sensor_hysteresis.width": WIDTH}
+    bare = estimator.at(Explanation())
+    named = Supported(NOMINAL, scored(data, bare), {})
+    searched = estimator.at(Explanation((), (Variant("sensor_hysteresis", ("width",)),)), own)
+    taken = Estimator(data, NOMINAL.with_values(own)).at(Explanation())
+    for reached, has in ((bare, True), (searched, True), (taken, False)):
+        found = with_play(named, reached, data, NOMINAL)
+        assert [key.effect for key in found.weights if isinstance(key, Variant)] == ["sensor_hysteresis"] * has

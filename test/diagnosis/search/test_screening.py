@@ -52,6 +52,14 @@ def test_a_change_in_the_middle_is_looked_for_alone_and_in_one_recording() -> No
         assert any(candidate.changes for candidate in candidates_on(data, seed)) == expected
 
 
+def test_beside_what_accounts_for_all_only_what_promises_a_gain_is_fitted() -> None:
+    candidates = candidates_on(data_on(recording({}, duration=12.0)), Explanation())
+    assert any(candidate.changes for candidate in candidates)
+    assert not any(candidate.starts for candidate in candidates if candidate.changes or candidate.drifts)
+    drifted = candidates_on(data_on(recording({"spring_preload": 0.292}, duration=12.0)), Explanation())
+    assert all(candidate.starts for candidate in drifted if candidate.addition == "spring_preload")
+
+
 def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
     """A weaker supply from 8 s on leaves no mark in the first four seconds, one from the start does."""
     plain = data_on(recording({}, duration=12.0))

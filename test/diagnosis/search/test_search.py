@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import TIED
-from pierburg_ros.diagnosis.search.supported import Beside
+from pierburg_ros.diagnosis.search.supported import Beside, Supported
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy
 from pierburg_ros.estimation.estimator import Fit
@@ -97,8 +97,9 @@ class Grown(Search):
     def _fit_ripples(self, seeds: object) -> None:
         pass
 
-    def _remains(self) -> bool:
-        return self.beam.resigns
+    def _likeliest_accounts_for_all(self) -> bool:
+        self.resigned = self.beam.resigns
+        return False
 
 
 ONES = [
@@ -146,12 +147,27 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted as if nothing were, leaves `beside`."""
     reached = made_up(ONES[0], 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
-    monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, None))
+    monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, beside, NOMINAL)))
     monkeypatch.setattr(empty, "refine", lambda _: None)
     empty.beam = Beam(resigns=True)
-    assert empty._remains() == (resigned or beside == 1.0)
+    assert empty._likeliest_accounts_for_all() == (beside == 1.0)
     assert empty.resigned == resigned
+    assert not empty._likeliest_accounts_for_all(), "asked once"
+
+
+def test_a_drift_gets_its_chance_in_the_place_of_one_of_two_effects(short: Data, pool: Executor) -> None:
+    """From where the two have ended: an effect of which little is seen stands for a drift that stopped before that."""
+    two = Explanation((), tuple(sorted((*ONES[0].variants, *ONES[1].variants), key=lambda each: each.effect)))
+    with_drift = Explanation(("coulomb_friction",), two.variants[:1])
+
+    class Stopped(Grown):
+        def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
+            late = explanation == with_drift and two not in self.fits
+            return self.keep(made_up(explanation, 5.0 if late else self.ratios.get(explanation, 9.0), NOMINAL))
+
+    found = Stopped(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, with_drift: 1.0, two: 1.005}, Beam(depth=2))
+    assert found.run().explanation == with_drift
 
 
 def test_what_accounts_for_all_is_not_grown(short: Data, pool: Executor) -> None:

@@ -98,7 +98,12 @@ def test_an_effect_that_is_named_is_counted_with_its_value(tmp_path, machine, as
     assert not untouched["beside"] and lagged["named"] and lagged["within"] and not lagged["already"]
     done = document.Run([untouched, lagged], plan)
     shares = document.headline(done)
-    assert str(shares["Effect put in at plain strength: named"]).startswith("1/1")
+    # the made-up signal is far from what a valve does, and a lag moves it by less
+    assert lagged["shown"] is False and untouched["shown"] is None
+    assert str(shares["Effect put in at plain strength, shown or not: named"]).startswith("1/1")
+    assert str(shares["Effect put in at plain strength, and shown: named"]) == "n = 0"
+    seen = document.headline(document.Run([untouched, {**lagged, "shown": True}], plan))
+    assert str(seen["Effect put in at plain strength, and shown: named"]).startswith("1/1")
     assert str(shares["Untouched recordings given one more effect (false alarms)"]).startswith("0/1")
     docs = tmp_path / "docs.md"
     docs.write_text("# Proof\n\nIntroduction.\n")

@@ -9,7 +9,7 @@ def truth(kind="sensor_lag", true=None):
     """The label of a trial."""
     true = {"sensor_lag.time_constant": 0.02} if true is None else true
     label = {"id": "a", "recording": "run", "half": 0, "kind": kind, "level": "plain", "strength": 0.02, "limit": None}
-    return {**label, "true": true}
+    return {**label, "true": true, "shown": bool(true) or None}
 
 
 def naming(*effects, drifted=(), ties=()):

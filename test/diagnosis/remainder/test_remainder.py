@@ -1,0 +1,31 @@
+"""The model below what remains: the best one alone, or what a confirmed shape was fitted to."""
+
+from dataclasses import replace
+
+import numpy as np
+from support.fits import found_among, made_up
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.diagnosis.remainder.remainder import _below
+from pierburg_ros.diagnosis.remainder.shape import Shape
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.plant import Model
+
+STIFFER = {"spring_stiffness": 0.17}
+NEVER = (np.zeros(0), np.zeros(0))
+
+
+def shape_on(base: Model) -> Shape:
+    return Shape(base, base, 1.0, 0.5, "", NEVER)
+
+
+def test_without_a_confirmed_shape_the_recalibrated_model_is_given_and_not_one_that_fits_worse():
+    """A shape may be fitted to the model as described; where nothing comes of it, that model is no result."""
+    explanation = Explanation(("spring_stiffness",))
+    recalibrated = made_up(explanation, 3.0, NOMINAL, STIFFER)
+    found = replace(found_among(data_on(recording({}, duration=5.0)), recalibrated), recalibrated=recalibrated)
+    alone, below_nominal = _below(found, None), _below(found, shape_on(NOMINAL))
+    assert alone.explanation == explanation and alone.values["spring_stiffness"] == 0.17
+    assert below_nominal.explanation == Explanation() and below_nominal.values["spring_stiffness"] == 0.1419
+    kept = _below(found, shape_on(NOMINAL.with_values({"spring_stiffness": 0.16})))
+    assert kept.explanation == explanation and kept.values["spring_stiffness"] == 0.16
