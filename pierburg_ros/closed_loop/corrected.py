@@ -63,6 +63,13 @@ def start(task: Task, in_use: Settings) -> Settings:
     return in_use.with_values(task.design.fixed)
 
 
+def starts(task: Task, in_use: Settings) -> list[Settings]:
+    """Where tuning begins: `start`, and where there is a schedule also with half and all of the load scheduled."""
+    first = start(task, in_use)
+    shares = (0.5, 1.0) if "load_share" in task.design.tuned else ()
+    return [first, *(first.with_values({"load_share": share}) for share in shares)]
+
+
 @dataclass(frozen=True)
 class Promise:
     """What a loop does at its worst step: medians over the seeds of the noise."""

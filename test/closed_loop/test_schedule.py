@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from pierburg_ros.closed_loop import simulate_runs
-from pierburg_ros.closed_loop.load import load
+from pierburg_ros.closed_loop.corrected import starts, task_for
+from pierburg_ros.closed_loop.goal import Goal
+from pierburg_ros.closed_loop.load import duty_for, load
 from pierburg_ros.closed_loop.plants import HOT, variations
 from pierburg_ros.control import Controller, Settings
+from pierburg_ros.control.fuzzy import pi_output_for
 from pierburg_ros.plant import Inputs, Model, simulate
 
 PERIOD = 0.002
@@ -60,6 +63,32 @@ def test_the_load_of_a_model_balances_its_spring(nominal):
         duty = known["load_closed"] + share * (known["load_open"] - known["load_closed"])
         sensed = simulate(smooth, Inputs(np.array([0.0]), np.array([duty])), time, angle)
         assert sensed[-1] == pytest.approx(hall(angle), abs=0.01)
+
+
+def test_tuning_begins_with_some_of_the_load_scheduled(nominal):
+    shares = {
+        schedule: [each.load_share for each in starts(task_for(nominal, Goal(), False, schedule), Settings())]
+        for schedule in (True, False)
+    }
+    assert shares == {True: [0.0, 0.5, 1.0], False: [0.0]}
+
+
+def test_a_hot_start_is_late_since_the_integrator_is_empty(nominal):
+    """5 degrees from the stop: late at once after a start, in time after a movement has filled the integrator.
+
+    With the empty one the shaft stops short, by no more than the error at which the fuzzy stage moves it on.
+    """
+    hot, target = variations(nominal)[HOT], math.radians(5.0)
+    fresh = np.repeat([[0.0, 0.0, target]], [300, 600, 500], axis=1)
+    moved = np.repeat([[math.radians(10.0), 0.0, target]], [300, 600, 500], axis=1)
+    short, right = (target - simulate_runs(hot, Settings(), each).angle[0, 900:] for each in (fresh, moved))
+    band = math.radians(0.3)
+    assert np.sum(np.abs(short) > band) > 4 * np.sum(np.abs(right) > band)
+    values = hot.values
+    torque = values["spring_preload"] + values["spring_stiffness"] * target + values["coulomb_friction"]
+    moving = pi_output_for(Settings().record(), duty_for(hot, torque), 0.0) * math.pi / 2 / 4.1
+    assert short[8] == pytest.approx(short[15], rel=1e-3)
+    assert band < short[8] < moving
 
 
 def test_a_hot_plant_leaves_the_stop_without_waiting_for_the_integrator(nominal):

@@ -14,7 +14,9 @@ from pierburg_ros.processes import free_domain
 
 TICKS = 500
 START, TARGET = 0.3, 0.9
-LAGGING = "actuator: pierburg\neffects: {sensor_lag: {time_constant: 0.009}}\n"
+FROM_THE_STOP = math.radians(20.0)
+LAGGING = "sensor_lag: {time_constant: 0.009}"
+RUBBING = "load_dependent_friction: {coefficient: 0.2}"
 
 
 def hall(angle: float) -> float:
@@ -22,11 +24,10 @@ def hall(angle: float) -> float:
     return 0.42 + angle / (math.pi / 2) * 4.1
 
 
-@pytest.fixture
-def corrected(tmp_path):
-    """The model file of a valve whose sensor lags, and the parameter file that is tuned for it."""
+def tuned(effect, tmp_path):
+    """The model file of a valve with an effect, and the parameter file that is tuned for it."""
     model, controller = tmp_path / "model.yaml", tmp_path / "controller.yaml"
-    model.write_text(LAGGING)
+    model.write_text(f"actuator: pierburg\neffects: {{{effect}}}\n")
     with pytest.raises(SystemExit) as ended:
         arguments = ("--model", model, "-o", controller, "--generations", "0", "--members", "4", "--quiet")
         main(["tune", *map(str, arguments)])
@@ -47,28 +48,61 @@ def overshoot(graph, model, setpoints, *arguments) -> float:
     return (max(message.data for message in sensed) - hall(TARGET)) / (hall(TARGET) - hall(START))
 
 
-@pytest.mark.ros
-def test_the_tuned_file_is_better_on_the_plant_that_has_the_effect(corrected, tmp_path):
+def load(graph, node, file):
+    """Load a parameter file into a running node as `ros2 param load` does it: every parameter, one by one."""
+    values = yaml.safe_load(file.read_text())["/**"]["ros__parameters"]
+    assert [result.reason for result in graph.set(node, **values) if not result.successful] == []
+
+
+def on_the_way(graph, model, setpoints, file=None) -> int:
+    """Samples between closed stop and target of a step, in lockstep; `file` goes into the running controller."""
+    sensed = graph.watch("hall_voltage", Float64)
+    graph.start("controller", "use_sim_time:=true", "hall_timeout:=0", f"setpoint_file:={setpoints}")
+    if file is not None:
+        load(graph, "controller", file)
+    graph.start("plant", "lockstep:=true", "time_factor:=0", "command_timeout:=0", f"model:={model}")
+    graph.until(lambda: len(sensed) > TICKS, "a run in lockstep")
+    margin = hall(math.radians(0.5)) - hall(0.0)
+    assert abs(sensed[-1].data - hall(FROM_THE_STOP)) < margin
+    return sum(hall(0.0) + margin < message.data < hall(FROM_THE_STOP) - margin for message in sensed)
+
+
+def before_and_after(tmp_path, measured, model, setpoints, *tuned):
+    """What is `measured` of the loop without and with what was `tuned`."""
     from support.ros_graph import Graph
 
-    model, controller = corrected
+    found = []
+    for given in ((), tuned):
+        # a domain for each: nobody is left from the run before
+        with Graph(free_domain(), tmp_path) as graph:
+            found.append(measured(graph, model, setpoints, *given))
+    return found
+
+
+@pytest.mark.ros
+def test_a_schedule_is_better_on_the_plant_whose_friction_grows_with_the_load(tmp_path):
+    """Nothing late, so the file schedules the load: the step no longer waits for the integrator."""
+    model, controller = tuned(RUBBING, tmp_path)
+    setpoints = tmp_path / "setpoints.csv"
+    # late: a test that hears the plant only after a while hears the whole step
+    setpoints.write_text(f"time,setpoint\n0,0\n0.8,{FROM_THE_STOP}\n")
+    before, after = before_and_after(tmp_path, on_the_way, model, setpoints, controller)
+    assert 0 < after < 0.75 * before
+
+
+@pytest.mark.ros
+def test_the_tuned_file_is_better_on_the_plant_that_has_the_effect(tmp_path):
+    model, controller = tuned(LAGGING, tmp_path)
     setpoints = tmp_path / "setpoints.csv"
     setpoints.write_text(f"time,setpoint\n0,{START}\n0.5,{TARGET}\n")
-    # a domain for each: nobody is left from the run before
-    with Graph(free_domain(), tmp_path) as graph:
-        before = overshoot(graph, model, setpoints)
-    with Graph(free_domain(), tmp_path) as graph:
-        after = overshoot(graph, model, setpoints, "--params-file", str(controller))
+    before, after = before_and_after(tmp_path, overshoot, model, setpoints, "--params-file", str(controller))
     assert before > 0.05
     assert after < 0.02
 
 
 @pytest.mark.ros
-def test_the_tuned_file_loads_into_a_running_controller_under_any_name(corrected, graph):
-    """As `ros2 param load` does it: every parameter of the file, one by one."""
-    _, controller = corrected
-    values = yaml.safe_load(controller.read_text())["/**"]["ros__parameters"]
+def test_the_tuned_file_loads_into_a_running_controller_under_any_name(tmp_path, graph):
+    _, controller = tuned(LAGGING, tmp_path)
     graph.start("controller", arguments=("-r", "__node:=throttle"))
-    results = graph.set("throttle", **values)
-    assert [result.reason for result in results if not result.successful] == []
+    load(graph, "throttle", controller)
     assert graph.get("throttle", "predictor_lag") == [0.009]
