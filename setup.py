@@ -113,7 +113,7 @@ setup(
         "matplotlib>=3.8",
         "rich>=13.8",
         "typer>=0.26",
-        "pydantic>=2.6",
+        "pydantic>=2.7",
         "jinja2>=3.1.2",
         "PyYAML>=6.0.1",
         "threadpoolctl>=3.2",
