@@ -34,10 +34,14 @@ def table(names: list[tuple[float, bool]]) -> str:
     """One row for each range of confidence."""
     rows = []
     for low, high in pairwise(BOUNDS):
-        right = [is_right for confidence, is_right in names if low <= confidence < high or confidence == high == 1.0]
-        if right:
-            rows.append(f"| {low:g} to {high:g} | {len(right)} | {Share(sum(right), len(right))} |")
-    heads = ["| confidence | names given | of these concealed (95 % Wilson interval) |", "|---|---|---|"]
+        group = [each for each in names if low <= each[0] < high or each[0] == high == 1.0]
+        if group:
+            stated, right = (sum(column) for column in zip(*group, strict=True))
+            rows.append(f"| {low:g} to {high:g} | {len(group)} | {stated:.1f} | {Share(right, len(group))} |")
+    heads = [
+        "| confidence | names given | right, by their confidences | concealed indeed (95 % Wilson interval) |",
+        "|---|---|---|---|",
+    ]
     return "\n".join([*heads, *rows])
 
 

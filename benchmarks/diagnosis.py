@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -95,6 +96,7 @@ def profile(recording: Path, budget: float) -> dict[str, Any]:
     """Diagnose one recording, write its files, and say what it took."""
     import pierburg_ros as pr
 
+    load = os.getloadavg()[0]
     stages = Stages()
     stages.watch()
     stages.spent[START] = time.process_time()
@@ -110,6 +112,7 @@ def profile(recording: Path, budget: float) -> dict[str, Any]:
         "verdict": found.verdict,
         "effects": list(found.effects),
         "seconds": dict(stages.spent),
+        "load": load,
     }
 
 
@@ -122,6 +125,7 @@ def section(rows: list[dict[str, Any]], budget: float) -> str:
     for name in used:
         lines.append(f"| {name} | " + " | ".join(f"{row['seconds'].get(name, 0.0):.1f}" for row in rows) + " |")
     lines.append("| **all** | " + " | ".join(f"{sum(row['seconds'].values()):.1f}" for row in rows) + " |")
+    lines.append("| load average of the machine before | " + " | ".join(f"{row['load']:.1f}" for row in rows) + " |")
     lines.append("| verdict | " + " | ".join(verdict(row) for row in rows) + " |")
     return "\n".join(
         [

@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import degrees
 from pathlib import Path
 
-from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
+from pierburg_ros.closed_loop.corrected import Promise, promises, start, starts, task_for
 from pierburg_ros.closed_loop.course import Course
 from pierburg_ros.closed_loop.goal import Goal
 from pierburg_ros.closed_loop.judgement import judge
@@ -67,7 +67,7 @@ def rows_of(name: str, changes: dict[str, float]) -> list[tuple[str, ...]]:
 
 def tuned(task: Task) -> Settings:
     """What a search finds."""
-    return tune(task, **EFFORT, known=[start(task, Settings())])
+    return tune(task, **EFFORT, known=starts(task, Settings()))
 
 
 def row(name: str, controller: str, task: Task, settings: Settings) -> tuple[str, ...]:

@@ -32,6 +32,15 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+def one_thread() -> threadpool_limits:
+    """While entered, linear algebra keeps to one thread: its arrays are tall and narrow here, and gain nothing by more.
+
+    with one_thread():
+        ...
+    """
+    return threadpool_limits(1)
+
+
 @contextmanager
 def workers(jobs: int | None = None, deadline: Deadline | None = None) -> Iterator[Executor]:
     """Threads for `jobs` pieces of work at a time; None: one for each core.
@@ -45,7 +54,7 @@ def workers(jobs: int | None = None, deadline: Deadline | None = None) -> Iterat
     """
     pool = _Threads(checked_jobs(jobs), deadline or Deadline())
     try:
-        with threadpool_limits(1):
+        with one_thread():
             yield pool
     except BaseException as error:
         # An interrupt waits for nothing; any other error leaves no work behind that still changes something.

@@ -99,7 +99,7 @@ ROOMS = {
     "proof": {
         "dirt": set(),
         "formulation": set(),
-        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run"},
+        "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run", "visibility"},
     },
     "recording": {
         "formats": {"columns", "loss"},

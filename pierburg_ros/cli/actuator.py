@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from pierburg_ros.actuators import read_actuator
+from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.actuators.writing import description_text
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption
@@ -64,21 +65,39 @@ def actuator(
     else:
         start = None if like is None else read_actuator(like)
         recording = read(from_recording, time=time, topics=topics_of(topic), signals=signals, actuator=start)
-        content = identified(recording, start or read_actuator(alike(recording)), file.stem, jobs)
+        if start is None:
+            start = read_actuator(alike(recording))
+            console.print(begun_from(start), soft_wrap=True)
+        content = identified(recording, start, file.stem, jobs)
     text = description_text(content, file.name)
     write_whole(file, text)
     console.print(f"Wrote {file}. Check it: pierburg actuator check {file}", soft_wrap=True)
     return {"file": str(file), "description": text}
 
 
-def asked(question: Question) -> str:
-    """A person's answer to a question; InputError where there is nobody to answer."""
+def begun_from(start: Actuator) -> str:
+    """What a person should know who named no actuator to start from."""
+    load = {"spring": "a spring", "pendulum": "a pendulum", "none": "nothing"}[start.load]
+    stops = "with" if start.has_stops else "without"
+    return (
+        f"Started from {start.name}, which is loaded by {load} and {stops} stops. If yours is of another kind or size,"
+        " describe it roughly and name that with --like FILE."
+    )
+
+
+def asked(question: Question, problem: str) -> str:
+    """A person's answer to a question; InputError where nobody is there to answer, or to answer again."""
+    if problem and not sys.stdin.isatty():
+        raise InputError(problem)
+    if problem:
+        typer.echo(problem, err=True)
     choices = f" ({', '.join(question.choices)})" if question.choices else ""
     try:
         return str(typer.prompt(question.text + choices, default=question.default, show_default=bool(question.default)))
     except typer.Abort:
         raise InputError(
-            f"Found no answer to {question.text!r}, expected one. Answer at a terminal, or use --from-recording."
+            f"Found no answer to {question.text.strip()!r}, expected one. Answer at a terminal, or use"
+            " --from-recording."
         ) from None
 
 

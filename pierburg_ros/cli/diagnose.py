@@ -62,7 +62,13 @@ def diagnose(
         topics = topics_of(topic)
         return [read(each, time=time, topics=topics, signals=named, actuator=nominal.actuator) for each in paths]
 
-    measured, simulated = taken(recordings, signals), taken(simulation or (), simulation_signals or signals)
+    measured = taken(recordings, signals)
+    try:
+        simulated = taken(simulation or (), simulation_signals or signals)
+    except InputError as error:
+        if signals is None or simulation_signals is not None:
+            raise
+        raise InputError(f"{error} Or give your simulator's recordings a map: --simulation-signals FILE.") from None
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)

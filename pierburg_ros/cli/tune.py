@@ -16,7 +16,7 @@ from pierburg_ros.cli.console.progress import Step, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption, SchedulerOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.closed_loop.corrected import Promise, promises, start, task_for
+from pierburg_ros.closed_loop.corrected import Promise, promises, starts, task_for
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import QUANTITIES, Goal
 from pierburg_ros.closed_loop.judgement import Judgement, judge
@@ -121,7 +121,7 @@ def refuse_for_one_plant(given: Mapping[str, object]) -> None:
 def retuned(task: Task, in_use: Settings, effort: Effort, output: Path) -> dict[str, object]:
     """Tune for one plant, write the parameter file, print and give what the loop did and will do."""
     before = judge(task.design, in_use, task.plants, jobs=effort.jobs)
-    after = tuned(task, effort, [start(task, in_use)])
+    after = tuned(task, effort, starts(task, in_use))
     write_whole(output, parameter_file(after.settings, heading(task.goal, after)))
     both = {"before": promises(before), "after": promises(after)}
     console = terminal()

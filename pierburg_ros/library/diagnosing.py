@@ -19,6 +19,7 @@ from pierburg_ros.library.tables import data_frame
 from pierburg_ros.recording import Recording
 from pierburg_ros.viewers.mcap_overlay import write_mcap
 from pierburg_ros.viewers.rerun_overlay import write_rerun
+from pierburg_ros.workers import one_thread
 
 if TYPE_CHECKING:
     import pandas
@@ -161,5 +162,6 @@ def diagnose(
     measured = recordings_of(recordings, nominal.actuator)
     simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
     tell = progress or (lambda _: None)
-    found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
+    with one_thread():
+        found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
     return Diagnosis(found, (*measured, *simulated))

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 
 NONE = "-"
+FEWEST = 3
+"""Digits of a value whose interval is wide. Chosen: with one, 2.54 beside 2.8 reads as more."""
 MOST = 9
 """Digits beyond which none is shown. Derived: a double has 16, a person reads a phone number."""
 
@@ -13,6 +15,11 @@ MOST = 9
 def number(value: float | None, digits: int = 4) -> str:
     """A number; a dash where there is none."""
     return NONE if value is None else f"{value:.{digits}g}"
+
+
+def whole(value: float | None) -> str:
+    """A large number without a fraction, its thousands apart; a dash where there is none."""
+    return NONE if value is None else f"{value:,.0f}"
 
 
 def interval(ends: Sequence[float] | None) -> str:
@@ -23,10 +30,11 @@ def interval(ends: Sequence[float] | None) -> str:
 
 
 def value(middle: float | None, ends: Sequence[float] | None = None) -> str:
-    """A value with as many digits as its interval has; a dash where there is none."""
-    if middle is None:
-        return NONE
-    return number(middle) if ends is None else _shown(middle, (*ends, middle))
+    """A value with as many digits as its interval has, and no less than `FEWEST`; a dash where there is none."""
+    if middle is None or ends is None:
+        return number(middle)
+    shown = _shown(middle, (*ends, middle))
+    return shown if abs(float(shown) - middle) <= 0.5 * 10.0 ** (1 - FEWEST) * abs(middle) else number(middle, FEWEST)
 
 
 def _shown(middle: float, among: Sequence[float]) -> str:
@@ -78,6 +86,7 @@ def ties(alternatives: Sequence[Sequence[str]]) -> str:
 
 FILTERS = {
     "number": number,
+    "whole": whole,
     "interval": interval,
     "value": value,
     "confidence": confidence,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -27,6 +28,8 @@ COLOURS = {
 OTHERS = 8
 """Colours that a page has for further curves, `other-0` and so on."""
 WINDOW, MISSING = "#f5c542", "#8a94a0"
+SHADE = {"type": "rect", "line": {"width": 0}, "layer": "below"}
+"""A rectangle behind the curves."""
 
 
 @dataclass(frozen=True)
@@ -82,22 +85,13 @@ def over_time(time: tuple[str, Signal], panels: Sequence[Panel], spans: Sequence
         for curve in panel.curves:
             plot.add_trace(_trace(time, curve, curve.group not in known), row, 1)
             known.add(curve.group)
-        if panel.band is not None:
-            plot.add_hrect(
-                y0=-panel.band,
-                y1=panel.band,
-                row=row,
-                col=1,
-                fillcolor=MISSING,
-                opacity=0.3,
-                line_width=0,
-                layer="below",
-            )
         plot.update_yaxes(title_text=panel.axis, row=row, col=1)
-    for span in spans:
-        _shade(plot, span)
     plot.update_xaxes(title_text="time [s]", row=len(panels), col=1)
-    return finished(plot).update_layout(hovermode="x")
+    # all at once: Plotly checks every shape there is when one is added
+    shades = [*_bands(panels), *(_shade(span, row) for span in spans for row in range(1, len(panels) + 1))]
+    notes = [*plot.layout.annotations, *(_note(span) for span in spans if span.text)]
+    plot.update_layout(hovermode="x", shapes=shades, annotations=notes)
+    return finished(plot)
 
 
 def _trace(time: tuple[str, Signal], curve: Curve, first: bool) -> go.Scatter:
@@ -119,14 +113,32 @@ def _trace(time: tuple[str, Signal], curve: Curve, first: bool) -> go.Scatter:
     )
 
 
-def _shade(plot: go.Figure, span: Span) -> None:
+def _bands(panels: Sequence[Panel]) -> Iterator[dict[str, Any]]:
+    """What noise fills in each panel, all along it."""
+    for row, panel in enumerate(panels, start=1):
+        if panel.band is not None:
+            across = {"xref": f"{_axis('x', row)} domain", "x0": 0, "x1": 1}
+            yield {**SHADE, **across, "yref": _axis("y", row), "y0": -panel.band, "y1": panel.band,
+                   "fillcolor": MISSING, "opacity": 0.3}  # fmt: skip
+
+
+def _shade(span: Span, row: int) -> dict[str, Any]:
+    """A span in the panel of a row, over all its height."""
     colour, opacity = (MISSING, 0.45) if span.missing else (WINDOW, 0.28)
-    plot.add_vrect(
-        x0=span.start, x1=span.end, row="all", col=1, fillcolor=colour, opacity=opacity, line_width=0, layer="below"
-    )
-    if span.text:
-        where = {"x": (span.start + span.end) / 2, "y": 1.0, "yref": "y domain", "yanchor": "top"}
-        plot.add_annotation(**where, text=span.text, showarrow=False, row=1, col=1)
+    along = {"xref": _axis("x", row), "x0": span.start, "x1": span.end}
+    return {**SHADE, **along, "yref": f"{_axis('y', row)} domain", "y0": 0, "y1": 1,
+            "fillcolor": colour, "opacity": opacity}  # fmt: skip
+
+
+def _note(span: Span) -> dict[str, Any]:
+    """What is written into a span, in the first panel."""
+    where = {"x": (span.start + span.end) / 2, "xref": "x", "y": 1.0, "yref": "y domain", "yanchor": "top"}
+    return {**where, "text": span.text, "showarrow": False}
+
+
+def _axis(kind: str, row: int) -> str:
+    """What Plotly calls the axis of a row."""
+    return kind if row == 1 else f"{kind}{row}"
 
 
 def thinned(time: Signal, values: Signal) -> tuple[Signal, Signal]:

@@ -36,6 +36,9 @@ def test_asks_and_writes_what_can_be_read(tmp_path, monkeypatch):
     [
         ("", "Found no answer to 'Name of the actuator'"),
         ("lift\nsteam\n", "drive: found 'steam', expected one of voltage"),
+        ("lift\nvoltage\nnone\nposition\nlinear\n0.3 0\n", "stops: found '0.3 0', expected the lower stop first"),
+        ("lift\nvoltage\nnone\nposition\nlinear\n\n1.2 ohm\n", "found '1.2 ohm', expected a number alone"),
+        ("lift\nvoltage\nnone\nposition\nlinear\n\n0\n", "armature_resistance: found '0', expected a number above 0"),
     ],
 )
 def test_what_cannot_be_used_is_one_line_and_leaves_nothing(tmp_path, monkeypatch, capsys, answers, said):
@@ -43,6 +46,17 @@ def test_what_cannot_be_used_is_one_line_and_leaves_nothing(tmp_path, monkeypatc
     assert ended("new", tmp_path / "lift.yaml") == 2
     assert said in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_person_is_asked_again(tmp_path, monkeypatch, capsys):
+    wrong = ANSWERS.replace("voltage\n", "steam\nvoltage\n").replace("0 0.3\n", "0.3 0\n0 0.3\n")
+    terminal = io.StringIO(wrong)
+    terminal.isatty = lambda: True
+    monkeypatch.setattr("sys.stdin", terminal)
+    assert ended("new", tmp_path / "lift.yaml") == 0
+    said = capsys.readouterr().err
+    assert "found 'steam'" in said and "found '0.3 0'" in said
+    assert read_actuator(str(tmp_path / "lift.yaml")).upper_stop == 0.3
 
 
 def test_never_overwrites_unless_told(tmp_path, monkeypatch, capsys):
@@ -55,13 +69,14 @@ def test_never_overwrites_unless_told(tmp_path, monkeypatch, capsys):
     assert file.read_text() != "mine"
 
 
-def test_starts_from_a_recording_and_marks_what_it_guessed(tmp_path):
+def test_starts_from_a_recording_and_marks_what_it_guessed(tmp_path, capsys):
     model = Model.nominal(read_actuator("pierburg")).with_values({"armature_resistance": 5.0})
     time = np.arange(6000) / 500.0
     duty = np.repeat(np.random.default_rng(3).uniform(-0.1, 0.45, 30), 200)
     made = synthetic_recording(model, time, duty)
     write_simulated(tmp_path / "bench.mcap", time, duty, made.measured)
     assert ended("new", tmp_path / "mine.yaml", "--from-recording", tmp_path / "bench.mcap", "--jobs", 1) == 0
+    assert "Started from pierburg, which is loaded by a spring and with stops." in capsys.readouterr().out
     found = read_actuator(str(tmp_path / "mine.yaml")).parameters
     assert found["armature_resistance"].nominal == pytest.approx(5.0, rel=0.01)
     assert found["armature_resistance"].origin.startswith("identified from bench.mcap")

@@ -102,8 +102,10 @@ def test_a_usage_error_is_one_line_and_status_2(command, capsys, arguments, line
 
 def test_a_choice_that_does_not_exist_is_answered_with_the_nearest(capsys):
     assert ending(["actuator", "chck", "pierburg"]) == 2
-    line = "Invalid value for 'action': 'chck' is not one of 'new', 'check'. Did you mean check?"
-    assert capsys.readouterr().err == f"pierburg: {line} See 'pierburg actuator --help'.\n"
+    said = capsys.readouterr().err  # older typer names the argument by its choices
+    assert said.lower().startswith("pierburg: invalid value for 'action")
+    end = "': 'chck' is not one of 'new', 'check'. Did you mean check? See 'pierburg actuator --help'.\n"
+    assert said.endswith(end) and said.count("\n") == 1
 
 
 def test_results_appear_only_when_all_is_done(tmp_path):

@@ -13,11 +13,13 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
 
 COMMAND = """
-import os, sys, time
+import os, signal, sys, time
 from pathlib import Path
 from types import SimpleNamespace
 from pierburg_ros.cli import app
 from pierburg_ros.library import output
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts what runs in the background without
 
 def tune() -> None:
     with output.output_folder(Path(sys.argv[1])) as folder:
@@ -140,8 +142,8 @@ def test_a_name_with_markup_and_control_characters_is_a_name(tmp_path):
 
 PARENT = """
 import os, subprocess, sys, time
-child = "from pierburg_ros.processes import end_with_parent; end_with_parent(%d)"
-child = child % os.getpid() + "; import time; print(1, flush=True); time.sleep(600)"
+child = "from pierburg_ros.processes import end_with_parent; import signal, time; end_with_parent(%d, signal.SIGTERM)"
+child = child % os.getpid() + "; print(1, flush=True); time.sleep(600)"
 process = subprocess.Popen([sys.executable, "-c", child], start_new_session=True, stdout=subprocess.PIPE)
 process.stdout.readline()
 print(process.pid, flush=True)

@@ -22,7 +22,7 @@ def log(monkeypatch):
 def test_a_step_says_how_many_of_how_many_the_best_and_the_time_left():
     step = Step("searching", 12, 40, "error 3.2 times the noise", 45.0)
     assert step.words == "12 of about 40, error 3.2 times the noise, about 45 s left"
-    assert Step("searching", 12).words == "12 tried"
+    assert Step("searching", 12).words == Step("searching", 12, 12).words == "12 tried"
     assert Step("searching").words == ""
 
 

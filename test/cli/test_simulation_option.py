@@ -64,3 +64,12 @@ def test_bad_input_is_one_line_and_status_2(files, capsys, arguments, line):
     error = capsys.readouterr().err
     assert line in error and error.count("\n") == 1
     assert not (files / "out").exists()
+
+
+def test_a_map_that_does_not_suit_the_simulator_is_told_from_one_of_its_own(files, capsys):
+    renamed = (files / "real.csv").read_text().replace("duty", "pwm")
+    (files / "real.csv").write_text(renamed)
+    (files / "m.yaml").write_text("duty: {column: pwm}\n")
+    assert run("real.csv", "--signals", "m.yaml", "--output", "out", "--simulation", "one.csv") == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert "one.csv has no column pwm" in said and "--simulation-signals FILE" in said

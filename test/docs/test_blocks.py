@@ -58,6 +58,15 @@ def test_the_contract_shows_fields_that_the_document_has():
     assert set(diagnosis) <= {field.alias or name for name, field in Diagnosis.model_fields.items()}
 
 
+@pytest.mark.parametrize("page", pages())
+def test_a_table_has_a_head_and_no_gap(page):
+    """Rows behind an empty line are shown as they stand, bars and all."""
+    lines = ["", *re.sub(r"```.*?```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.DOTALL).splitlines()]
+    for before, line, after in zip(lines, lines[1:], lines[2:], strict=False):
+        if line.startswith("|") and not before.startswith("|"):
+            assert set(after) <= set("|-: "), f"{page}: {line}"
+
+
 def test_links_between_pages_lead_somewhere():
     """Also those that the site leaves to GitHub: folders, sources, examples."""
     for page in pages():

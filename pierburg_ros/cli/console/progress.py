@@ -34,7 +34,8 @@ class Step:
         """How many were tried of about how many, in words."""
         if self.done is None:
             return ""
-        return f"{self.done} tried" if self.about is None else f"{self.done} of about {self.about}"
+        more = self.about is not None and self.about > self.done
+        return f"{self.done} of about {self.about}" if more else f"{self.done} tried"
 
     @property
     def words(self) -> str:
