@@ -20,6 +20,9 @@ from pierburg_ros.nodes.graph.parameters import LiveNode
 TURN = 0.1
 """Longest time [s] until a signal is noticed while nothing else happens."""
 
+AGAIN = 0.5
+"""Time [s] after which a signal that was not heard is raised again: well within the 5 s in which a node has to end."""
+
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -31,10 +34,10 @@ def run(make: Callable[[], LiveNode]) -> NoReturn:
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     status = 0
     try:
-        for number in SIGNALS:
-            signal.signal(number, signal.default_int_handler)
-        serve(make())
-    except KeyboardInterrupt:
+        node = made(make)
+        if node is not None:
+            serve(node)
+    except KeyboardInterrupt:  # between its making and its serving
         pass
     except InputError as error:
         print(" ".join(str(error).split()), file=sys.stderr)
@@ -42,6 +45,34 @@ def run(make: Callable[[], LiveNode]) -> NoReturn:
     finally:
         rclpy.try_shutdown()
     leave(status)
+
+
+def made(make: Callable[[], LiveNode]) -> LiveNode | None:
+    """The node, or none where a signal came while it was made.
+
+    A signal is raised again every `AGAIN` until it is heard: the compiler's callbacks swallow what is raised within
+    them, or end in an error of their own.
+    """
+    told = False
+
+    def interrupt(*_: object) -> None:
+        nonlocal told
+        told = True
+        sys.unraisablehook = lambda _: None  # what a callback swallows is told as a traceback otherwise
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        raise KeyboardInterrupt
+
+    for number in (*SIGNALS, signal.SIGALRM):
+        signal.signal(number, interrupt)
+    node = None
+    try:
+        node = make()
+    except (Exception, KeyboardInterrupt):
+        if not told:
+            raise
+    finally:
+        signal.signal(signal.SIGALRM, signal.SIG_IGN)
+    return None if told else node
 
 
 def leave(status: int) -> NoReturn:
