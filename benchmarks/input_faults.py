@@ -294,41 +294,45 @@ def page(rows: list[tuple[str, str, int, int]], clean: list[Clean]) -> str:
 HEAD = """\
 # Signals that are not what they are read as
 
-Written by `python benchmarks/input_faults.py --shared FOLDER`.
+A wrong unit, sign, clock or channel is found before anything is searched for. The page is written by
+`python benchmarks/input_faults.py --shared FOLDER`.
 
-Before anything is searched for, `pierburg diagnose` holds the signals against the actuator. Whatever physics a
-description lacks, the input still causes the motion: the actuator, its numbers free to drift, explains the better part
-of it. Where it explains next to nothing, and after one slip is undone nearly everything, that slip is a fault. So is a
-shaft that moves before its input says so, and recordings that no common set of numbers explains.
+Whatever physics a description lacks, the input still causes the motion: the actuator, its numbers free to drift,
+explains the better part of it. Where it explains next to nothing, and after one slip is undone nearly everything, that
+slip is a fault. So is a shaft that moves before its input says so, and recordings that no common set of numbers
+explains.
 
-Then nothing is concluded: `diagnosis.json` has `input_faults`, each with the line of the signal map that mends it, the
-verdict is `unexplained` without an effect, and the exit status is 0, for the command did its job. `--force` goes on.
-`identify` and `replay` print the same lines as a warning, and `inspect --actuator` as a hint. A late answer is no fault
-(delay and lag are physics), and what equals a drift by less than a factor of 6 is a drift.
+Then `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the line of the signal map that mends
+it, the verdict is `unexplained` without an effect, and the exit status is 0. `--force` goes on. `identify` and `replay`
+print the same lines as a warning, `inspect --actuator` as a hint.
+
+A late answer is no fault (delay and lag are physics), and what equals a drift by less than a factor of 6 is a drift.
 
 Where setpoints are recorded and a proportional controller made the duty, it follows from setpoint and angle nearly
 exactly, whatever physics is missing (0.9996 or more of it in the eight runs of the servo). That rule tells to a sample
-when the duty was computed, and whether the angle is in the unit of the setpoint. It counts where the motion, with the
-duty moved to that time, is explained no worse: a slow controller is no fault.
+when the duty was computed, and whether the angle is in the unit of the setpoint. It counts only where the motion, with
+the duty moved to that time, is explained no worse.
 
 Found: {found} of {tried} faults, made of practice recordings (valve) and real ones (bench, XL330). Found means
-that the right signal is blamed in the right words. Refusals by the reader, such as that of percent, count where they
-name what mends them. An audit of a minute at 500 Hz takes 0.02 to 3.1 s of processor time, one of ten minutes 0.05
-to 2.6 (n = 7 each).
+that the right signal is blamed in the right words, by the audit or by the reader's refusal. An audit of a minute at
+500 Hz takes 0.02 to 3.1 s of processor time, one of ten minutes 0.05 to 2.6 (n = 7 each).
 
 | fault | of | found |
 |---|---|---|
 """
 CLEAN = """
-What is not found is mostly tied. Without stops and setpoints, turns for radians are a drift by 6.3. Late stamps hide in
-a real delay, and an inertial servo smooths them away: without setpoints it does not tell them, for moved in time by 10
-to 60 ms the input of clean runs agrees better in five of eight. A duty that changes every second is logged often
-enough at 50 Hz. A sensor that is off without ever reading beyond a stop equals drifts.
+What is not found is mostly tied:
+
+- Without stops and setpoints, turns for radians are a drift by 6.3.
+- Late stamps hide in a real delay. An inertial servo smooths them away: moved in time by 10 to 60 ms, the input of
+  clean runs agrees better in five of eight.
+- A duty that changes every second is logged often enough at 50 Hz.
+- A sensor that is off without ever reading beyond a stop equals drifts.
 
 Two actuators as one are told by what one set of numbers loses beside their own. On recordings that had no part in the
-choice of that limit, 20 of 24 pairs of different valves are found (16 with the limit before), and none of 21 pairs of
-one valve with an effect is blamed. One set of numbers does not do for a winding that is 75 K hotter either; where its
-temperature alone would be a reason, the line says so, and by how many kelvin. 50 K pass.
+choice of that limit, 20 of 24 pairs of different valves are found, and none of 21 pairs of one valve with an effect is
+blamed. A winding that is 75 K hotter is blamed too; where its temperature alone would be a reason, the line says so,
+and by how many kelvin. 50 K pass.
 
 ## Nothing wrong with the signals
 

@@ -12,40 +12,42 @@ HEAD = """\
 
 Written by `python -m pierburg_ros.effects.page > docs/effects.md`; edit the declarations, not this page.
 
-Everything the simulator can add to the paper's plant, in the order of the signal path. An effect is absent, bit for
-bit, while its strength is 0 (a stiffness of 0 is rigid). Any of them may act together. The names are those of the
-model file, of the ROS parameters of `plant` (`effect.parameter`) and of the diagnosis.
+What the simulator can add to the paper's plant and the diagnosis can name, in the order of the signal path. An effect
+is absent, bit for bit, while its strength (bold) is 0; a stiffness of 0 is rigid. Any of them may act together. The
+model file and the ROS parameters of `plant` (`effect.parameter`) use the same names.
 
 w is the shaft velocity, x = angle / (pi/2), i the current, T_m = k_g k_m i the motor torque at the shaft, T_c the
-Coulomb friction. Load torques are positive when they close. *Accepted* excludes what is impossible, and what has more
-than nine digits. *Plausible* is where a search starts, as a multiple of the actuator's own scale of the unit: of its
-stall torque, the travel between its stops, the time of that travel at no-load speed, its supply voltage and stall
-current (`actuators/scales.py`), so that it holds for any actuator in any units.
+Coulomb friction. Load torques are positive when they close. *Accepted* excludes what is impossible. *Plausible* is
+where a search starts, as a multiple of the actuator's own scale of the unit (`actuators/scales.py`): stall torque and
+current, travel, the time of that travel at no-load speed, supply voltage.
 """
 
 
 def page() -> str:
     """The page, as Markdown."""
-    return "\n".join([HEAD, *_overview(), *(line for effect in EFFECTS for line in _section(effect))])
+    sources = list(dict.fromkeys(effect.source for effect in EFFECTS))
+    sections = (line for effect in EFFECTS for line in _section(effect, sources.index(effect.source) + 1))
+    listed = (f"{number}. {source}." for number, source in enumerate(sources, 1))
+    return "\n".join([HEAD, *_overview(), *sections, "## Sources\n", *listed, ""])
 
 
 def _overview() -> Iterator[str]:
-    yield "| acts on | effect | in one sentence |"
-    yield "|---|---|---|"
+    yield "| acts on | effect | in one sentence | shows in | to see it, record |"
+    yield "|---|---|---|---|---|"
     for effect in EFFECTS:
-        yield f"| {effect.stage} | [{effect.id}](#{effect.id}) | {effect.sentence} |"
+        link = f"[{effect.id}](#{effect.id})"
+        yield f"| {effect.stage} | {link} | {effect.sentence} | {effect.shows_in} | {effect.record} |"
     yield ""
 
 
-def _section(effect: Effect) -> Iterator[str]:
+def _section(effect: Effect, source: int) -> Iterator[str]:
     yield f"## {effect.id}\n"
-    yield f"{effect.sentence}\n"
     yield f"    {effect.equation}\n"
     yield "| parameter | unit | accepted | plausible | default | meaning |"
     yield "|---|---|---|---|---|---|"
     for parameter in effect.parameters:
         yield _row(effect, parameter)
-    yield f"\nShows in: {effect.shows_in}. To see it, record: {effect.record}. Source: {effect.source}.\n"
+    yield f"\n[Source {source}](#sources).\n"
 
 
 def _row(effect: Effect, parameter: Parameter) -> str:
