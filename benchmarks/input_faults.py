@@ -297,10 +297,9 @@ HEAD = """\
 A wrong unit, sign, clock or channel is found before anything is searched for. The page is written by
 `python benchmarks/input_faults.py --shared FOLDER`.
 
-Whatever physics a description lacks, the input still causes the motion: the actuator, its numbers free to drift,
-explains the better part of it. Where it explains next to nothing, and after one slip is undone nearly everything, that
-slip is a fault. So is a shaft that moves before its input says so, and recordings that no common set of numbers
-explains.
+Whatever physics a description lacks, the actuator, its numbers free to drift, explains the better part of the motion.
+Where it explains next to nothing, and after one slip is undone nearly everything, that slip is a fault. So is a shaft
+that moves before its input says so, and recordings that no common set of numbers explains.
 
 Then `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the line of the signal map that mends
 it, the verdict is `unexplained` without an effect, and the exit status is 0. `--force` goes on. `identify` and `replay`
@@ -308,10 +307,9 @@ print the same lines as a warning, `inspect --actuator` as a hint.
 
 A late answer is no fault (delay and lag are physics), and what equals a drift by less than a factor of 6 is a drift.
 
-Where setpoints are recorded and a proportional controller made the duty, it follows from setpoint and angle nearly
-exactly, whatever physics is missing (0.9996 or more of it in the eight runs of the servo). That rule tells to a sample
-when the duty was computed, and whether the angle is in the unit of the setpoint. It counts only where the motion, with
-the duty moved to that time, is explained no worse.
+Where setpoints are recorded and a proportional controller made the duty, it follows from setpoint and angle (0.9996 or
+more of it in the eight runs of the servo). That tells to a sample when the duty was computed, and whether the angle is
+in the unit of the setpoint. It counts only where the motion is explained no worse then.
 
 Found: {found} of {tried} faults, made of practice recordings (valve) and real ones (bench, XL330). Found means
 that the right signal is blamed in the right words, by the audit or by the reader's refusal. An audit of a minute at

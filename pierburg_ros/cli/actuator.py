@@ -41,7 +41,7 @@ def actuator(
     file: Annotated[Path, typer.Argument(help="The description (YAML); to check also the name of a shipped one.")],
     from_recording: Annotated[Path | None, typer.Option(help="Start from what this recording tells.")] = None,
     like: Annotated[
-        str | None, typer.Option(help="Actuator whose numbers stand where the recording tells none.")
+        str | None, typer.Option(help="Actuator that gives the numbers which the recording does not tell.")
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it is there.")] = False,
     signals: SignalsOption = None,

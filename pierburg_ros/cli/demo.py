@@ -46,8 +46,9 @@ def demo(
 ) -> dict[str, object]:
     """Close a loop over ROS, record it, replay it; conceal an effect, record again, and have it diagnosed.
 
-    The first run is replayed against the true model, measured runs of a real bench against a simple one. In the
-    second run the plant sticks and its spring has drifted; the diagnosis sees the recording alone.
+    The first run is replayed against the true model. Measured runs of a real bench, where there are any, are replayed
+    against a simple one. In the second run the plant sticks and its spring has drifted; the diagnosis sees the
+    recording alone.
     """
     require_ros()
     console = terminal()

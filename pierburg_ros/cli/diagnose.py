@@ -32,7 +32,7 @@ def diagnose(
         list[Path] | None,
         typer.Option(
             metavar="SIM...",
-            help="Recordings of the same actuator made by your own simulator, which then stands for the model.",
+            help="Recordings of the same actuator by your own simulator: say what that one lacks.",
         ),
     ] = None,
     simulation_signals: Annotated[

@@ -58,7 +58,7 @@ def experiment(
     output: Annotated[Path | None, typer.Option(help="Folder for the sequence and its recording.")] = None,
     discriminate: Annotated[
         tuple[str, str] | None,
-        typer.Option(help="Design the sequence that best separates two effects or model files; or nominal."),
+        typer.Option(help="Design the sequence that best separates two explanations: effects, model files, nominal."),
     ] = None,
     model: ModelOption = None,
     actuator: ActuatorOption = None,
@@ -72,8 +72,8 @@ def experiment(
 ) -> dict[str, object]:
     """Record an excitation recipe, of the simulated actuator or over the ROS graph.
 
-    Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence
-    first, explains it, and records it only with --graph, or simulated when a --model is given.
+    Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence and explains
+    it. It then records only if told: over the graph with --graph, simulated with --model.
     """
     if (name is None) == (discriminate is None) or output is None:
         raise InputError(

@@ -25,12 +25,13 @@ def fleet(
     output: Annotated[Path, typer.Option(help="Folder for the results; an earlier run there goes on.")],
     pattern: Annotated[
         str | None,
-        typer.Option(help="What is unit and date in a path below the folder, e.g. '{unit}/{date}_*.mcap'."),
+        typer.Option(help="Where unit and date stand in a path below the folder, e.g. '{unit}/{date}_*.mcap'."),
     ] = None,
     limit: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME=VALUE", help="Say when a quantity gets there, e.g. armature_resistance=5.0; again for more."
+            metavar="NAME=VALUE",
+            help="Say when a quantity reaches a value, e.g. armature_resistance=5.0; again for more.",
         ),
     ] = None,
     actuator: ActuatorOption = None,

@@ -99,8 +99,8 @@ def print_results(console: Console, found: Identification, output: Path) -> None
     )
     if not found.fitted.covariance.white:
         console.print(
-            "The residual is not white: the model lacks something, and the intervals are only as honest as "
-            f"{found.fitted.covariance.blocks} stretches of it allow. Try pierburg diagnose.",
+            "The residual is more than noise (not white): the model lacks something, and the intervals may be too "
+            "narrow. Try pierburg diagnose.",
             soft_wrap=True,
         )
     console.print(f"Results in {output}: identification.json, .html, model.yaml, PNGs", soft_wrap=True)

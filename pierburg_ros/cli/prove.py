@@ -29,7 +29,7 @@ def prove(
     output: Annotated[Path, typer.Option(help="Folder for trials and results; an earlier run there goes on.")],
     real: RealOption = None,
     trials: Annotated[
-        int | None, typer.Option(min=1, help="Trials of each kind; with --real, on so many of the recordings.")
+        int | None, typer.Option(min=1, help="Trials of each kind; with --real, recordings that are used.")
     ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Only this kind of trial; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is drawn.")] = 1,
@@ -55,9 +55,9 @@ def prove(
     simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
     reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
 
-    With --real, effects are put into your own recordings by changing their channels where that is exact; the diagnosis
-    has to find them beside all that is really there, against the model of your other recordings. Writes results.jsonl
-    and proof-real.md.
+    With --real, effects are put into your own recordings, by changing their channels where that is exact. The diagnosis
+    has to find them beside all that is really there. It starts from a model of your other recordings. Writes
+    results.jsonl and proof-real.md.
     """
     if real is not None:
         why = "with --real, where nothing is recorded. Leave it out"

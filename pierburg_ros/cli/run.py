@@ -27,8 +27,8 @@ def run(
 ) -> dict[str, str]:
     """Start a node; it runs until SIGINT or SIGTERM.
 
-    Everything behind the node's name goes to ROS, as in: pierburg run plant --ros-args -p rate:=1000.0
-    The node stays on this machine unless ROS_AUTOMATIC_DISCOVERY_RANGE says otherwise (SUBNET opens it).
+    Everything behind the node's name goes to ROS. Only this machine sees the node;
+    ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET opens it to the network.
     """
     if node not in NODES:
         raise InputError(f"There is no node {node!r}; expected one of {', '.join(NODES)}.{near(node, NODES)}")

@@ -71,9 +71,9 @@ def tune(
 ) -> dict[str, object]:
     """Find PIFLC gains and sets for a goal, over plants cold, hot and with each effect of the catalogue.
 
-    With --model or --actuator: for that plant, cold and hot, beside the controller in use. The file is a ROS parameter
-    file; load it into a running controller with: ros2 param load /controller FILE
-    On a cluster each controller of a comparison is tuned by one worker.
+    With --model or --actuator: for that plant, cold and hot, compared with the controller in use. Writes a ROS
+    parameter file; 'ros2 param load /controller FILE' loads it into a running controller. On a cluster each controller
+    of a comparison is tuned by one worker.
     """
     for path in (output, compare):
         if path is not None and path.is_dir():

@@ -183,10 +183,10 @@ def characteristic(contents: Contents, root: Element) -> None:
     if actuator.quantity == "hall_voltage":
         name, data = "hall_voltage", (contents.base("hall_voltage_closed"), contents.base("hall_voltage_open"))
         span = numbers(actuator.sensor_span)
-        note = f"Hall voltage = closed + (open - closed) x angle / {span}, of the custom numbers `hall_voltage`."
+        note = f"Sensor: the angle. Hall voltage = closed + (open - closed) x angle / {span}; both in `hall_voltage`."
     else:
         name, data = "sensor", (contents.base("sensor_offset"), contents.base("sensor_scale"))
-        note = "Measured value = offset + scale x true value, of the custom numbers `sensor`."
+        note = "Sensor: true values. Measured value = offset + scale x true value; both in `sensor`."
     if data != (0.0, 1.0):
         child(child(root, "custom"), "numeric", name=name, data=numbers(*data))
         contents.notes.append(note)

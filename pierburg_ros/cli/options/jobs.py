@@ -24,6 +24,6 @@ BudgetOption = Annotated[
     typer.Option(
         min=1.0,
         show_default=f"{USUAL_BUDGET:g}",
-        help="Seconds of an idle machine after which a diagnosis gives its best verdict yet.",
+        help="Stop a diagnosis after this many seconds of an idle machine, with the best verdict yet.",
     ),
 ]

@@ -27,7 +27,7 @@ SignalsOption = Annotated[
     typer.Option(
         "--signals",
         metavar="FILE",
-        help="Signal map (YAML): each signal from any topic and field, or any column. 'inspect' writes one to edit.",
+        help="Signal map (YAML): which topic and field, or column, is which signal. 'inspect' writes one.",
     ),
 ]
 TimeOption = Annotated[
@@ -35,7 +35,7 @@ TimeOption = Annotated[
     typer.Option(
         "--time",
         metavar="{stamp,clock,publish,log}",
-        help="Choose the clock of the recording; by default the first of these that it has.",
+        help="Clock of the recording; default: the first of these that it has.",
     ),
 ]
 
