@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
+from pierburg_ros.actuators.scales import Scales
 from pierburg_ros.actuators.units import Motion, unit_of
 from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
@@ -107,6 +109,11 @@ class Actuator:
         if self.motion == "rotary":
             return math.pi / 2
         return self.upper_stop if math.isfinite(self.upper_stop) else 1.0
+
+    @cached_property
+    def scales(self) -> Scales:
+        """What is large for it as described."""
+        return Scales.of(self)
 
     @property
     def unit(self) -> str:

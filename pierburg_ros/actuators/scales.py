@@ -10,9 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-from pierburg_ros.actuators.actuator import Actuator
 from pierburg_ros.effects import COPPER
+
+if TYPE_CHECKING:
+    from pierburg_ros.actuators.actuator import Actuator
 
 READING = "reading"
 """What stands for the unit of the measured quantity, whichever it is."""

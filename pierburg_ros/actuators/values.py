@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from numbers import Real
@@ -47,7 +48,8 @@ def check(actuator: Actuator, name: str, value: object) -> None:
     minimum, maximum = accepted(actuator, name)
     declared = actuator.parameters[name] if name in actuator.parameters else DECLARED[name]
     absent = isinstance(value, Real) and not isinstance(value, bool) and value == 0.0 and minimum <= 0.0
-    if not absent:
+    usual = isinstance(value, float) and not declared.choices and minimum <= value <= maximum and math.isfinite(value)
+    if not (absent or usual):
         replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(value, name)
 
 

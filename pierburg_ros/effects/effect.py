@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, Protocol
 
 from pierburg_ros import parameter
@@ -245,7 +246,7 @@ class Effect:
         """The declaration of the parameter called `name`, without the id; KeyError where there is none."""
         return {p.name: p for p in self.parameters}[name]
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in the order of the declaration."""
         return tuple(p.name for p in self.parameters)
@@ -271,7 +272,12 @@ class Effect:
 
     def acts(self, values: Mapping[str, float]) -> bool:
         """Whether it acts in a model with these `values`, by dotted name."""
-        return any(values[f"{self.id}.{name}"] != 0.0 for name in self.strength)
+        return any(map(values.__getitem__, self._strengths))
+
+    @cached_property
+    def _strengths(self) -> tuple[str, ...]:
+        """Dotted names of what is its strength."""
+        return tuple(f"{self.id}.{name}" for name in self.strength)
 
     def obstacle(self, drive: Drive, load: Load, sensor: Sensor, stops: bool) -> str:
         """Why it cannot act in an actuator of this kind, in words; nothing where it can."""

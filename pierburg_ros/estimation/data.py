@@ -84,13 +84,14 @@ class Data:
         """
         parts = [run.measured - run.simulated(model, switch) for run in self.runs]
         whole = np.concatenate(parts) / self.noise
-        unknown = UNSIMULATED * (-1.0) ** np.arange(whole.size)
-        return np.clip(np.where(np.isfinite(whole), whole, unknown), -WILD, WILD)
+        missing = np.flatnonzero(~np.isfinite(whole))
+        whole[missing] = UNSIMULATED * (1.0 - 2.0 * (missing % 2))
+        return np.clip(whole, -WILD, WILD)
 
     @property
     def scales(self) -> Scales:
         """What is large for the actuator."""
-        return Scales.of(self.actuator)
+        return self.actuator.scales
 
     @property
     def half_step(self) -> float:

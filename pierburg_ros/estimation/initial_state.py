@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded, sensitivity, trail
+from pierburg_ros.plant.decode import angle_per_unit, decoded_value, sensitivity, trail
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
@@ -76,7 +76,7 @@ class InitialState:
         """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
         if quantity == "speed":
             return self._turning(model)
-        angle = float(decoded(model, self.level, quantity))
+        angle = decoded_value(model, self.level, quantity)
         per_radian = sensitivity(model, angle, quantity)
         margin = 3.0 * self.noise / abs(per_radian)
         lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
@@ -84,6 +84,8 @@ class InitialState:
             return lower, 0.0
         if angle >= upper - margin:
             return upper, 0.0
+        if self.rate == 0.0:
+            return angle, 0.0
         velocity = self.rate / per_radian
         lag, play = trail(model)
         return angle + lag * velocity + 0.5 * play * float(np.sign(velocity)), velocity
@@ -91,7 +93,7 @@ class InitialState:
     def _turning(self, model: Model) -> tuple[float, float]:
         """The same where the speed is measured; at rest where noise allows it."""
         angle = rest_angle(model) if math.isnan(self.angle) else self.angle
-        velocity = float(decoded(model, self.level, "speed"))
+        velocity = decoded_value(model, self.level, "speed")
         margin = 3.0 * self.noise * abs(angle_per_unit(model))
         return angle, 0.0 if abs(velocity) <= margin else velocity
 

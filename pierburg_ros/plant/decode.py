@@ -21,6 +21,11 @@ def decoded(model: Model, measured: ArrayLike, quantity: str | None = None) -> N
     return np.asarray(sensor.decode_all(record, values.ravel(), is_angle)).reshape(values.shape)
 
 
+def decoded_value(model: Model, measured: float, quantity: str | None = None) -> float:
+    """`decoded` of one value: a fit asks for it before every simulation."""
+    return float(sensor.decode(model.record()[0], measured, _is_angle(model, quantity)))
+
+
 def encoded(model: Model, angle: ArrayLike) -> NDArray[np.float64]:
     """Hall voltage [V] that a straight sensor with the ends of `model` shows at each `angle` [rad], same shape."""
     record = model.record()[0]

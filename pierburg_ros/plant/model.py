@@ -59,10 +59,10 @@ class Model:
         """Accepted range of the parameter called `name`; InputError where there is none."""
         return accepted(self.actuator, name)
 
-    @cached_property
+    @property
     def scales(self) -> Scales:
         """What is large for the actuator as described."""
-        return Scales.of(self.actuator)
+        return self.actuator.scales
 
     def record(self) -> np.ndarray:
         """The parameter record that the kernels read, shape (1,); one record for all runs of a model."""

@@ -64,6 +64,23 @@ PARAMETERS = np.dtype(
     align=True,
 )
 
+
+def _offset(record: np.dtype[np.void], name: str) -> int:
+    """Where the field called `name` begins in a `record` [bytes]."""
+    assert record.fields is not None
+    return record.fields[name][1]
+
+
+_NUMBERS = {
+    **{name: _offset(PARAMETERS, name) for name in BASE},
+    **{
+        f"{effect.id}.{name}": _offset(PARAMETERS, effect.id) + _offset(PARAMETERS[effect.id], name)
+        for effect in EFFECTS
+        for name in effect.names
+    },
+}
+"""Where each number begins in the record [bytes], by dotted name."""
+_PLACES = np.array(list(_NUMBERS.values())) // np.dtype(np.float64).itemsize
 _OUTSIDE = ("input", "drive", "sensor")
 """Stages whose states are advanced beside the mechanics: in short stretches, at whose ends the two meet."""
 _serial = count(1)
@@ -88,10 +105,7 @@ def pack(
     change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
     """
     record = np.zeros(1, PARAMETERS)
-    for name in BASE:
-        record[name] = values[name]
-    for effect in EFFECTS:
-        record[effect.id] = tuple(values[f"{effect.id}.{name}"] for name in effect.names)
+    record.view(np.float64)[_PLACES] = [values[name] for name in _NUMBERS]
     record["lower_stop"], record["upper_stop"] = lower_stop, upper_stop
     record["drive"], record["sensor"], record["sensor_span"] = drive, sensor, sensor_span
     record["agility"] = 1.0 / values["total_inertia"]

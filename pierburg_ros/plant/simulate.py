@@ -188,14 +188,22 @@ def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]
 
 def _increasing(sample_times: ArrayLike) -> Signal:
     times = np.ascontiguousarray(sample_times, dtype=float)
-    ends = times[[0, -1]] if times.ndim == 1 and times.size else np.array([math.nan])
-    if not (np.all(np.isfinite(ends)) and np.all(times[1:] > times[:-1])):
+    if times.ndim != 1 or times.size == 0 or not _increase(times):
         raise InputError("The sample times are empty or do not increase; expected increasing times. Sort them.")
     return times
 
 
 _NOTHING = np.empty(0)
 _ALWAYS = np.empty(0, dtype=bool)
+
+
+@kernel
+def _increase(times):
+    """Whether `times`, one or more, are finite and each is later than the one before."""
+    for index in range(1, times.size):
+        if not times[index] > times[index - 1]:
+            return False
+    return np.isfinite(times[0]) and np.isfinite(times[-1])
 
 
 @kernel

@@ -46,7 +46,7 @@ class Motion:
     @property
     def scales(self) -> Scales:
         """What is large for the actuator."""
-        return Scales.of(self.actuator)
+        return self.actuator.scales
 
     @property
     def effort(self) -> Signal:
@@ -105,7 +105,7 @@ class Motion:
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
-    nominal, scales = Model.nominal(actuator), Scales.of(actuator)
+    nominal, scales = Model.nominal(actuator), actuator.scales
     angle, per_unit = turned(nominal, run.time, run.measured, run.quantity), angle_per_unit(nominal)
     interval = float(np.median(np.diff(run.time)))
     half = max(INSTANT * scales.time, 2.0 * interval)

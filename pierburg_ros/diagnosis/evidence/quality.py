@@ -96,7 +96,7 @@ class Limit:
 
 def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None:
     """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
-    shortest = SHORTEST * Scales.of(actuator).time if forgets(actuator) else 0.0
+    shortest = SHORTEST * actuator.scales.time if forgets(actuator) else 0.0
     for recording in recordings:
         if recording.time.size < FEWEST or recording.duration < shortest:
             raise InputError(
@@ -135,7 +135,7 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     limits = [
         *_limits_of_movement(motions, runs, noise),
         *_limits_of_start(runs, actuator),
-        *_limits_of_sampling(runs, Scales.of(actuator)),
+        *_limits_of_sampling(runs, actuator.scales),
         *_limits_of_reach(motions),
     ]
     return [replace(limit, input=actuator.input) for limit in limits]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.units import unit_of
 
 GRAVITY = 9.81
@@ -76,7 +76,7 @@ def _of_load(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
 
 
 def _of_motor(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
-    scales, motion = Scales.of(actuator), actuator.motion
+    scales, motion = actuator.scales, actuator.motion
     needed = _needed(actuator, value)
     inertial = value["total_inertia"] * (scales.angle / scales.time) / scales.torque
     yield Derived(

@@ -66,7 +66,7 @@ def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     """The stretches of constant duty, in order, each cut to its longest part clear of the stops."""
     duty = recording.command.at(recording.time, before=0.0)
     angle = angle_of(recording, actuator)
-    own = Scales.of(actuator)
+    own = actuator.scales
     margin = STOP_MARGIN * own.angle
     clear = (angle > actuator.lower_stop + margin) & (angle < actuator.upper_stop - margin)
     edges = np.flatnonzero((np.diff(duty) != 0.0) | (np.diff(clear.astype(int)) != 0)) + 1

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.identification.paper.holds import Settled, angle_noise, holds, moving, settled
 from pierburg_ros.recording import Recording
 
@@ -50,7 +50,7 @@ class StaticCharacteristic:
 
 def static_characteristic(recordings: Sequence[Recording], actuator: Actuator) -> StaticCharacteristic | None:
     """The static characteristic from all stretches of constant duty; None where a branch has too few."""
-    scales = Scales.of(actuator)
+    scales = actuator.scales
     found = [
         hold
         for recording in recordings

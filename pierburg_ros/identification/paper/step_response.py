@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.identification.paper.holds import STOP_MARGIN, angle_of
 from pierburg_ros.identification.paper.static_characteristic import StaticCharacteristic
@@ -64,7 +64,7 @@ def second_order(time: Signal, slow: float, fast: float) -> Signal:
 
 def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
     """The upward steps of duty that find the shaft on the closed stop, each until the duty changes again."""
-    angle, own = angle_of(recording, actuator), Scales.of(actuator)
+    angle, own = angle_of(recording, actuator), actuator.scales
     margin, found = STOP_MARGIN * own.angle, []
     times = [*recording.command.time, np.nextafter(recording.time[-1], np.inf)]
     for start, end, duty in zip(times[:-1], times[1:], recording.command.values, strict=True):
@@ -87,7 +87,7 @@ def step_response(
     found = [step for recording in recordings for step in steps_from_rest(recording, actuator)]
     if not found or static is None:
         return None
-    fastest = FASTEST / Scales.of(actuator).time
+    fastest = FASTEST / actuator.scales.time
     still = static.preload_duty.value + static.coulomb_duty.value
     voltage = [(step.duty - still) * supply for step in found]
 
