@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,11 +17,15 @@ from rotor import slow
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.audit import audit
 from pierburg_ros.effects import EFFECTS
+from pierburg_ros.effects.put_in import CannotPutIn
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.coordinates import in_order
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.excitation import duty_sequence
+from pierburg_ros.proof.real.channels import with_effect
+from pierburg_ros.proof.real.strengths import possible, values_at
+from pierburg_ros.proof.real.strengths import strength as strongest
 from pierburg_ros.proof.strengths import drift, strength
 from pierburg_ros.recording import Channel, Recording, read_recording
 from pierburg_ros.recording.read import check_bounds
@@ -78,6 +83,10 @@ def later(by: float) -> Make:
     return lambda one, other: [replace(one, command=Channel(one.command.time + by, one.command.values))]
 
 
+def at_rate(rate: float) -> Make:
+    return lambda one, other: [replace(one, command=Channel(rate * one.command.time, one.command.values))]
+
+
 def seldom(one: Recording, other: Recording) -> list[Recording]:
     return [replace(one, command=Channel(one.command.time[::10], one.command.values[::10]))]
 
@@ -117,11 +126,13 @@ FAULTS = (
     Made("duty: stamped 20 ms late", later(0.02), ("duty",), "late"),
     Made("duty: stamped 50 ms late", later(0.05), ("duty",), "late"),
     Made("duty: stamped 1 s late", later(1.0), ("duty",), "late"),
+    Made("duty: clock 1 % fast", at_rate(1.01), ("duty",), "fast"),
     Made("duty: logged at a tenth of the rate", seldom, ("duty",), ""),
     Made("duty: setpoint in its place [rad]", setpoint, ("duty",), "setpoint"),
     Made("duty: setpoint in its place, share of the travel", setpoint_of_travel, ("duty",), "setpoint", on=("valve",)),
     Made("duty: constant", duty(lambda d: np.zeros_like(d)), ("duty",), ""),
-    Made("duty and sensor swapped", swapped, ("duty", "hall_voltage", "position"), ""),
+    Made("duty and sensor swapped", swapped, ("duty", "hall_voltage", "position"), "", on=("valve",)),
+    Made("duty and sensor swapped", swapped, ("duty", "position"), "exchanged", on=("bench",)),
     Made("sensor: polarity reversed", measured(lambda v: 4.94 - v), ("hall_voltage",), "polarity", on=("valve",)),
     Made("sensor: polarity reversed", measured(lambda v: -v), ("position", "duty"), "polarity", on=("bench",)),
     Made("sensor: negated", measured(lambda v: -v), ("hall_voltage",), "negated", on=("valve",)),
@@ -183,7 +194,8 @@ def main() -> None:
     parser.add_argument("--shared", type=Path, default=Path("../shared"))
     parser.add_argument("--output", type=Path, default=PAGE)
     options = parser.parse_args()
-    clean = [row for kind in (practice(options.shared), real(options.shared), simulated(), drifted()) for row in kind]
+    kinds = (practice(options.shared), real(options.shared), changed(options.shared), simulated(), drifted())
+    clean = [row for kind in kinds for row in kind]
     rows = [*faulty(options.shared), two_valves(options.shared)]
     options.output.write_text(page(rows, clean), encoding="utf-8")
 
@@ -246,6 +258,26 @@ def real(shared: Path) -> Iterator[Clean]:
     yield blamed("real AK80 pendulum", [[each] for each in pendulum], PENDULUM)
     turned = list(slow(shared / "data/odrive"))
     yield blamed("real ODrive rotor, each and all as one", [*([each] for each in turned), turned], ROTOR)
+
+
+def changed(shared: Path) -> Iterator[Clean]:
+    """Real recordings with each effect put in that can be, as strong as is plausible and half as strong."""
+    kinds = {
+        "XL330 servo": ([read_recording(path) for path in sorted((shared / "data/xl330").glob("*.mcap"))], BENCH),
+        "AK80 pendulum": ([read_recording(path) for path in sorted((shared / "data/ak80").glob("*.csv"))], PENDULUM),
+        "ODrive rotor": (list(slow(shared / "data/odrive")), ROTOR),
+    }
+    for name, (recordings, model) in kinds.items():
+        made = [each for recording in recordings for each in with_effects(recording, model)]
+        yield blamed(f"real {name}, known effects put in", [[each] for each in made], model)
+
+
+def with_effects(recording: Recording, model: Model) -> Iterator[Recording]:
+    for effect in possible(model.actuator):
+        plain = strongest(effect, "plain", model, ())
+        for share in (1.0, 0.5):
+            with suppress(CannotPutIn):
+                yield with_effect(recording, effect, values_at(effect, share * plain, model), model)
 
 
 def simulated() -> Iterator[Clean]:
