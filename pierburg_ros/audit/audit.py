@@ -72,8 +72,12 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
     found = followed(signals, given, nominal) or closed_loop(signals, given, slips(signals, nominal), nominal)
     if not found and given is not None and given.suffices:
         timed = Signals.of(recording, TIMED)
-        found = wandering(timed, signals, given, nominal) or early(timed, given)
-        found = found or plainer(tuple(exchanged(signals)), signals, given, nominal) or rescaled(signals, given, nominal)
+        found = (
+            wandering(timed, signals, given, nominal)
+            or early(timed, given)
+            or plainer(tuple(exchanged(signals)), signals, given, nominal)
+            or rescaled(signals, given, nominal)
+        )
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []
