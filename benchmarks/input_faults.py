@@ -126,6 +126,7 @@ FAULTS = (
     Made("duty: stamped 20 ms late", later(0.02), ("duty",), "late"),
     Made("duty: stamped 50 ms late", later(0.05), ("duty",), "late"),
     Made("duty: stamped 1 s late", later(1.0), ("duty",), "late"),
+    Made("duty: clock 0.2 % fast", at_rate(1.002), ("duty",), "fast", on=("valve",)),
     Made("duty: clock 1 % fast", at_rate(1.01), ("duty",), "fast"),
     Made("duty: logged at a tenth of the rate", seldom, ("duty",), ""),
     Made("duty: setpoint in its place [rad]", setpoint, ("duty",), "setpoint"),
@@ -341,7 +342,8 @@ verdict is `unexplained` without an effect, and the exit status is 0, for the co
 Where setpoints are recorded and a proportional controller made the duty, it follows from setpoint and angle nearly
 exactly, whatever physics is missing (0.9996 or more of it in the eight runs of the servo). That rule tells to a sample
 when the duty was computed, and whether the angle is in the unit of the setpoint. It counts where the motion, with the
-duty moved to that time, is explained no worse: a slow controller is no fault.
+duty moved to that time, is explained no worse: a slow controller is no fault. A duty and an angle that were exchanged
+show in it as well: read so, the angle weighs one over the gain of the loop.
 
 Found: {found} of {tried} faults, made of practice recordings (valve) and real ones (bench, XL330). Found means
 that the right signal is blamed in the right words. Refusals by the reader, such as that of percent, count where they
@@ -355,7 +357,13 @@ CLEAN = """
 What is not found is mostly tied. Without stops and setpoints, turns for radians are a drift by 6.3. Late stamps hide in
 a real delay, and an inertial servo smooths them away: without setpoints it does not tell them, for moved in time by 10
 to 60 ms the input of clean runs agrees better in five of eight. A duty that changes every second is logged often
-enough at 50 Hz. A sensor that is off without ever reading beyond a stop equals drifts.
+enough at 50 Hz. On the servo a duty logged at a tenth of its rate costs 0.9 to 1.4 times as much of the motion as one
+logged in full (n = 8): all that betrays it is that the shaft answers half an interval early, 26 ms, which clean runs
+seem to do too. A sensor that is off without ever reading beyond a stop equals drifts.
+
+A clock that runs away is told where the lag grows, no one lag does for all parts, and no delay explains the motion as
+well. Slow motions correlate at any lag: a servo's run of 5 s does not tell 1 %. Nor is a drift of more than the lags
+that are looked at, 75 samples, told: 1 % of a minute is 0.6 s.
 
 Two actuators as one are told by what one set of numbers loses beside their own. On recordings that had no part in the
 choice of that limit, 20 of 24 pairs of different valves are found (16 with the limit before), and none of 21 pairs of
@@ -363,6 +371,9 @@ one valve with an effect is blamed. One set of numbers does not do for a winding
 temperature alone would be a reason, the line says so, and by how many kelvin. 50 K pass.
 
 ## Nothing wrong with the signals
+
+A rotor that creeps over its poles tells little of its input; with a coarse converter, a lag or a play put in, five of 24
+such recordings are blamed wrongly: their velocities no longer correlate by a half.
 
 | recordings | n | blamed |
 |---|---|---|
