@@ -372,7 +372,7 @@ temperature alone would be a reason, the line says so, and by how many kelvin. 5
 
 ## Nothing wrong with the signals
 
-A rotor that creeps over its poles tells little of its input; with a coarse converter, a lag or a play put in, five of 24
+A rotor that creeps over its poles tells little of its input; with a coarse converter, a lag or a play put in, 5 of 24
 such recordings are blamed wrongly: their velocities no longer correlate by a half.
 
 | recordings | n | blamed |

@@ -38,7 +38,8 @@ CERTAIN = 4.0
 """Velocity, in standard deviations of its noise, from which friction has a known sign. Derived: white noise comes as
 far with 6e-5."""
 NEAR = 0.01
-"""Distance from a stop within which its force is unknown, as a share of the travel. Chosen: a hundredth."""
+"""Distance from a stop within which its force is unknown, as a share of the travel. Chosen: as where a
+diagnosis takes a shaft to rest on it; not varied."""
 FEWEST = 50
 """Moments of the motion for each number that is looked for, at least. Derived: those in one window say the same."""
 MOST = 4000
