@@ -50,7 +50,7 @@ tell stays as described, and a factor of 20 costs less than a thousandth of that
 STEP = 1e-4
 """Step of the finite differences, in logarithms. Derived: the balance is smooth, and this far above rounding."""
 ITERATIONS = 100
-"""Iterations at most. Work: a balance of 4000 moments takes less than a millisecond; not varied."""
+"""Iterations of its fit at most. Work: a balance of 4000 moments takes less than a millisecond; not varied."""
 
 
 @dataclass(frozen=True)
