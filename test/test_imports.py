@@ -102,9 +102,10 @@ ROOMS = {
         "real": {"document", "intervals", "run", "score", "seal", "tally", "trial_run", "visibility"},
     },
     "recording": {
-        "formats": {"columns", "loss"},
+        "units": set(),
+        "formats": {"columns", "loss", "units"},
         "signals": {"formats"},
-        "signal_map": {"signals"},
+        "signal_map": {"signals", "units"},
         "message_types": {"formats", "signal_map", "signals"},
         "decoding": {"formats", "message_types", "signal_map", "signals"},
         "topics": {"decoding", "formats", "signal_map", "signals"},
@@ -132,6 +133,7 @@ ROOMS = {
             "signal_map",
             "signals",
             "tables",
+            "units",
         },
     },
 }

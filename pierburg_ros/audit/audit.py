@@ -17,7 +17,7 @@ from pierburg_ros.audit.loop import closed_loop
 from pierburg_ros.audit.reach import DOUBTFUL, impossible
 from pierburg_ros.audit.servo import followed
 from pierburg_ros.audit.signals import Signals
-from pierburg_ros.audit.slips import Slip, between_stops, slips
+from pierburg_ros.audit.slips import Slip, between_stops, exchanged, slips
 from pierburg_ros.audit.still import still
 from pierburg_ros.audit.timing import early, shift, wandering
 from pierburg_ros.audit.together import apart
@@ -72,7 +72,12 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
     found = followed(signals, given, nominal) or closed_loop(signals, given, slips(signals, nominal), nominal)
     if not found and given is not None and given.suffices:
         timed = Signals.of(recording, TIMED)
-        found = wandering(timed, signals, given, nominal) or early(timed, given) or rescaled(signals, given, nominal)
+        found = (
+            wandering(timed, signals, given, nominal)
+            or early(timed, given)
+            or plainer(tuple(exchanged(signals)), signals, given, nominal)
+            or rescaled(signals, given, nominal)
+        )
     elif not found:
         found = mended(signals, given, nominal)
     return [found] if found else []
@@ -97,7 +102,12 @@ def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None
     """
     if SENSOR & set(nominal.actuator.free) or not impossible(signals, nominal, DOUBTFUL):
         return None
-    found = undone(tuple(between_stops(signals, nominal)), FAR_BETTER * given.cost, nominal)
+    return plainer(tuple(between_stops(signals, nominal)), signals, given, nominal)
+
+
+def plainer(candidates: Sequence[Slip], signals: Signals, given: Explained, nominal: Model) -> Fault | None:
+    """The slip that, once undone, explains far better a motion that is explained as it is read, too."""
+    found = undone(candidates, FAR_BETTER * given.cost, nominal)
     return blamed(found, signals, given, nominal) if found else None
 
 

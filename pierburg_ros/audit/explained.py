@@ -101,10 +101,10 @@ class Fit:
         self.stride = max(signals.time.size // COMPARED, 1)
         self.motion = self._motion()
 
-    def best(self, iterations: int) -> Explained:
-        """The numbers that explain the most, drifting reluctantly."""
+    def best(self, iterations: int, begin: Model | None = None) -> Explained:
+        """The numbers that explain the most, drifting reluctantly; from those of `begin`, else as described."""
         size = len(self.names)
-        start, bound = np.zeros(size), np.full(size, FARTHEST)
+        start, bound = np.zeros(size) if begin is None else self.point(begin), np.full(size, FARTHEST)
         found = minimise(self._cost, start, -bound, bound, np.full(size, STEP), iterations, 1e-3)
         model = self.model(found.point)
         simulated = self.simulated(model)

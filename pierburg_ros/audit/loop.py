@@ -69,9 +69,12 @@ def closed_loop(signals: Signals, given: Explained | None, slips: Iterable[Slip]
         if given is None or moved.cost <= NO_WORSE * given.cost:
             evidence = f"It follows from setpoint and angle as they were {1e3 * late:.3g} ms before,"
             return stamped_late(signals, late, f"{evidence} by one rule for {100.0 * (1.0 - found.left):.1f} % of it.")
-    if abs(found.weighs_alike - 1.0) <= OTHERWISE:
+    off = abs(found.weighs_alike - 1.0)
+    if off <= WEIGHED:
         return None
     for slip in slips:
+        if off <= OTHERWISE and slip.mended.inputs is signals.inputs:
+            continue  # another unit of the angle is farther off; exchanged with the input it may be near
         other = rule(slip.mended, nominal) if slip.signal == signals.quantity else None
         if other is None or abs(other.weighs_alike - 1.0) > WEIGHED:
             continue

@@ -70,6 +70,20 @@ class Signals:
         limited = np.clip(values, -1.0, 1.0) if self.input == "duty" else values
         return replace(self, inputs=replace(self.inputs, command=limited))
 
+    def exchanged(self) -> Signals | None:
+        """With the measured values as the input and the input as measured; None where no duty can be such a value."""
+        if self.input == "duty" and float(np.max(np.abs(self.measured))) > 1.0:
+            return None
+        times = np.unique(np.concatenate([self.inputs.time, self.time]))
+        supply, enabled = self.inputs.supply_voltage, self.inputs.enabled
+        inputs = Inputs(
+            times,
+            Channel(self.time, self.measured).at(times),
+            None if supply is None else Channel(self.inputs.time, supply).at(times),
+            None if enabled is None else Channel(self.inputs.time, enabled.astype(float)).at(times, before=1.0) > 0.5,
+        )
+        return replace(self, measured=self.command, inputs=inputs)
+
     def supplied_with(self, scale: float) -> Signals:
         """With scale * supply voltage."""
         supply = self.inputs.supply_voltage

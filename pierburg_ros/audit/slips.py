@@ -51,6 +51,7 @@ def slips(signals: Signals, nominal: Model) -> Iterator[Slip]:
     yield from _of_input(signals)
     yield from _of_sensor(signals, nominal)
     yield from _of_time(signals)
+    yield from exchanged(signals)
     if signals.inputs.supply_voltage is not None:
         yield _mapped("supply_voltage", "millivolts read as volts", "scale: 0.001", signals.supplied_with(1e-3))
 
@@ -137,6 +138,15 @@ def _of_time(signals: Signals) -> Iterator[Slip]:
     for unit, scale, name in (("ms", 1e-3, "milliseconds"), ("us", 1e-6, "microseconds"), ("ns", 1e-9, "nanoseconds")):
         yield _mapped("time", f"{name} read as seconds", f"unit: {unit}", signals.timed_in(scale))
     yield _mapped("time", "seconds read as milliseconds", "unit: s", signals.timed_in(1e3))
+
+
+def exchanged(signals: Signals) -> Iterator[Slip]:
+    """Input and measured signal one for the other, where each can be the other."""
+    other = signals.exchanged()
+    if other is not None:
+        name, measured = signals.input, signals.quantity
+        what = f"{name} and {measured} exchanged"
+        yield Slip(measured, what, f"name each in place of the other: `{name}: ...`, `{measured}: ...`", other)
 
 
 def _mapped(signal: str, what: str, entries: str, mended: Signals) -> Slip:

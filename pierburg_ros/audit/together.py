@@ -12,6 +12,7 @@ from pierburg_ros.audit.balance import in_balance
 from pierburg_ros.audit.explained import FARTHEST, FULL, RELUCTANCE, STEP, Explained, Fit
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
+from pierburg_ros.estimation.balanced import Motion, balanced
 from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.plant import Model
 
@@ -39,8 +40,24 @@ Pair = tuple[Signals, Explained]
 
 def apart(pairs: Sequence[Pair], nominal: Model) -> list[Fault]:
     """The recordings that are not of the actuator of the first one; those that tell too little are left aside."""
-    told = [(signals, found) for signals, found in pairs if found.share >= ALONE and not in_balance(signals, nominal)]
+    if len(pairs) < 2:
+        return []
+    own = [(signals, by_itself(signals, found, nominal)) for signals, found in pairs]
+    told = [(signals, found) for signals, found in own if found.share >= ALONE and not in_balance(signals, nominal)]
     return [fault for other in told[1 : MOST + 1] if (fault := _apart(told[0], other, nominal)) is not None]
+
+
+def by_itself(signals: Signals, found: Explained, nominal: Model) -> Explained:
+    """What its own numbers explain of a motion: where that is little, looked for from the balance of torques too.
+
+    Another actuator may lie so far off that the fit from the description ends before it gets there.
+    """
+    if found.share >= ALONE:
+        return found
+    fit = Fit(signals, nominal, found.length)
+    motion = Motion(signals.inputs, signals.time, signals.measured, signals.quantity)
+    begin = balanced(nominal, [motion], fit.names)
+    return found if begin is None else max(found, fit.best(FULL, begin), key=lambda each: each.share)
 
 
 def _apart(first: Pair, other: Pair, nominal: Model) -> Fault | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +16,10 @@ from pierburg_ros.recording.formats import format_of
 from pierburg_ros.recording.formats.csv_table import MOST_CELLS
 from pierburg_ros.recording.loss import Loss, pauses, silences
 from pierburg_ros.recording.recording import Channel, Recording, check_signal
-from pierburg_ros.recording.signal_map import SignalMap, TimeSource
-from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, TIME, in_order
+from pierburg_ros.recording.signal_map import SignalMap, Source, TimeSource
+from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL, SIGNALS, TIME, in_order
 from pierburg_ros.recording.topics import nothing
+from pierburg_ros.recording.units import COUNTS, unit_of
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,8 @@ class TableReader:
         self.chosen = chosen
         self.columns = chosen.columns
         self.clock = chosen.time or TimeSource(columns=(TIME,))
-        self.base: float | None = None
+        self.base: tuple[float, float, int] | None = None
+        """The first time that was read, its unit [s], and from where it counts [ns since 1970]."""
         if self.clock.topic:
             raise topic_of_table(self.clock.origin, tables.name, "time: {column: NAME, unit: s}")
         for signal, source in chosen.sources.items():
@@ -164,30 +166,52 @@ class TableReader:
         """The filled cells of a signal with their times [s] since the first time that was read."""
         parts = self.parts(signal)
         time = np.concatenate([self.time(part) for part in parts])
-        raw = np.concatenate([self.raw(part, signal) for part in parts])
-        filled = ~np.isnan(raw)
-        source = self.chosen.sources.get(signal)
-        values = source.values(raw[filled]) if source else raw[filled]
+        every = np.concatenate([self.source(part, signal).values(self.raw(part, signal)) for part in parts])
+        filled = ~np.isnan(every)
+        values = every[filled]
         name = " and ".join(part.name for part in parts)
         check_signal(f"{name}: {printable(self.columns[signal])}", time[filled], values)
         return Channel(time[filled], values)
 
+    def source(self, part: Columns, signal: str) -> Source:
+        """What a person says of the signal; its unit is the one that the table states where they give none."""
+        column = self.columns[signal]
+        source = self.chosen.sources.get(signal) or Source("column", column)
+        if source.scaled or not (stated := part.unit(column)):
+            return source
+        if stated == COUNTS:
+            raise InputError(
+                f"{part.name} has {column} in counts, expected how much one is. Write it into a signal map, as"
+                f" {signal}: {{column: {column}, unit: counts, scale: 0.001}}."
+            )
+        return replace(source, unit=factor_of(part, column, stated, SIGNALS[signal].units))
+
     def time(self, part: Columns) -> Signal:
         """The times [s] of the rows, since the first time that was read."""
         self.check_clock(part)
-        raw = [part.values(column) for column in self.clock.columns]
-        empty = np.flatnonzero(np.any(np.isnan(raw), axis=0))
-        if empty.size:
-            raise InputError(f"{part.name} has an empty time in row {empty[0] + 2}. Fill it in.")
+        column, *nanoseconds = self.clock.columns
+        raw, unit = part.times(column), self.unit_of_time(part, column, bool(nanoseconds))
         if self.base is None:
-            self.base = float(raw[0][0])
-        whole: Signal = (raw[0] - self.base) * self.clock.unit
-        return whole + raw[1] * 1e-9 if len(raw) > 1 else whole
+            self.base = float(raw[0]), unit, part.origins.get(column, 0)
+        first, unit_of_first, origin = self.base
+        whole: Signal = (raw - first) * unit + first * (unit - unit_of_first)
+        whole += (part.origins.get(column, 0) - origin) * 1e-9
+        return whole + part.times(nanoseconds[0]) * 1e-9 if nanoseconds else whole
+
+    def unit_of_time(self, part: Columns, column: str, is_pair: bool) -> float:
+        """Seconds in one of the numbers in the `column`; stamps have seconds, and so has the first of a pair."""
+        if column in part.origins and (self.clock.scaled or is_pair):
+            found = "a unit" if self.clock.scaled else "a second column"
+            raise InputError(f"{self.clock.origin} has {found}, {part.name} has stamps in {column}. Leave it out.")
+        if self.clock.scaled or is_pair or column in part.origins or not (stated := part.unit(column)):
+            return self.clock.unit
+        return factor_of(part, column, stated, ("s",))
 
     @property
     def first(self) -> float:
         """The first time that was read [s], on the clock of the tables."""
-        return (self.base or 0.0) * self.clock.unit
+        first, unit, origin = self.base or (0.0, 1.0, 0)
+        return first * unit + origin * 1e-9
 
     def check_clock(self, part: Columns) -> None:
         """Refuse a table without the column of its times."""
@@ -212,6 +236,17 @@ class TableReader:
 def topic_of_table(origin: str, name: str, write: str) -> InputError:
     """What to say of a map for topics."""
     return InputError(f"{origin} names a topic, {name} has columns. Write {write}.")
+
+
+def factor_of(part: Columns, column: str, stated: str, wanted: tuple[str, ...]) -> float:
+    """What one of the unit that a table states is in SI; InputError where it is none of those `wanted`."""
+    unit = unit_of(stated)
+    if not any(unit.measures(each) for each in wanted) or stated == COUNTS:
+        raise InputError(
+            f"{part.name} has {column} in {stated}, expected a unit of {' or '.join(wanted)}. Correct its head, or give"
+            " the unit in a signal map."
+        )
+    return unit.factor
 
 
 def shifted(signal: Channel, origin: float) -> Channel:

@@ -20,17 +20,17 @@ TIME = np.arange(0.0, 10.0, 0.005)
 GAIN = 1.1
 
 
-def in_loop(slow: int = 0, seed: int = 0) -> Recording:
+def in_loop(slow: int = 0, seed: int = 0, gain: float = GAIN, weight: float = 1.0, size: float = 0.5) -> Recording:
     """A servo that follows smooth setpoints by a duty that is computed from what was `slow` samples before."""
     phases = np.random.default_rng(seed).uniform(0.0, 6.0, 3)
-    wanted = sum(0.5 * np.sin(rate * TIME + phase) for rate, phase in zip((1.1, 2.7, 4.9), phases, strict=True))
+    wanted = sum(size * np.sin(rate * TIME + phase) for rate, phase in zip((1.1, 2.7, 4.9), phases, strict=True))
     plant = Plant(LACKING, noise=0.0007, seed=seed)
     measured, duty = np.empty(TIME.size), np.zeros(TIME.size)
     for sample in range(TIME.size):
         measured[sample] = plant.measure()
         past = sample - slow
         if past >= 0:
-            duty[sample] = np.clip(GAIN * (wanted[past] - measured[past]), -1.0, 1.0)
+            duty[sample] = np.clip(gain * (weight * wanted[past] - measured[past]), -1.0, 1.0)
         plant.advance(duty[sample], 0.005)
     return Recording("loop", "position", TIME, measured, Channel(TIME, duty), setpoints=Channel(TIME, wanted))
 
@@ -69,3 +69,17 @@ def test_an_angle_in_another_unit_than_the_setpoint_is_named():
 def test_a_setpoint_that_nothing_follows_says_nothing():
     one = in_loop()
     assert rule(Signals.of(replace(one, setpoints=Channel(TIME, np.sin(7.0 * TIME)))), SERVO) is None
+
+
+@pytest.mark.parametrize("gain", [0.4, 1.08])
+def test_input_and_angle_that_were_exchanged_are_named(gain):
+    """Read so, the setpoint weighs 1 in the "duty" and the "angle" 1 / gain."""
+    one = in_loop(gain=gain, size=0.3)
+    assert audit([one], SERVO) == []
+    read = replace(one, measured=one.command.at(TIME), command=Channel(TIME, one.measured))
+    (fault,) = audit([read], SERVO)
+    assert fault.what == "duty and position exchanged"
+
+
+def test_a_controller_that_weighs_its_setpoint_less_is_no_fault():
+    assert audit([in_loop(weight=0.8)], SERVO) == []

@@ -13,7 +13,7 @@ from pierburg_ros.recording.signals import SIGNALS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "signals.md").read_text(encoding="utf-8")
 MAPS = re.findall(r"```yaml\n(.*?)```", PAGE, flags=re.DOTALL)
-(TABLE,) = re.findall(r"```csv\n(.*?)```", PAGE, flags=re.DOTALL)
+TABLE, STATED = re.findall(r"```csv\n(.*?)```", PAGE, flags=re.DOTALL)
 
 
 @pytest.fixture
@@ -50,6 +50,14 @@ def test_columns_with_semicolons_and_decimal_commas(tmp_path, signals):
     np.testing.assert_allclose(recording.supply_voltage.values, [13.5, 13.4, 13.4])
 
 
+def test_units_that_a_file_states(tmp_path):
+    (tmp_path / "run.csv").write_text(STATED)
+    recording = read_recording(tmp_path / "run.csv")
+    np.testing.assert_allclose(recording.time, [0.0, 0.002], atol=1e-12)
+    np.testing.assert_allclose(recording.command.values, [0.0, 0.355])
+    np.testing.assert_allclose(recording.measured, np.deg2rad([0.0, 0.1]))
+
+
 def test_files_in_parts(tmp_path, signals):
     folder = tmp_path / "bench"
     folder.mkdir()
@@ -72,9 +80,13 @@ def test_the_table_names_every_signal_with_its_units():
     assert all(unit in said[name] for name, signal in SIGNALS.items() for unit in signal.units if name != "enabled")
 
 
-def test_the_refusal_of_the_page(tmp_path, monkeypatch):
+def test_the_refusals_of_the_page(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("signals.yaml").write_text("duty: {topic: /a, unit: deg}\n")
-    with pytest.raises(InputError) as refused:
-        read_recording("run.csv", signals="signals.yaml")
-    assert f"```text\n{refused.value}\n```" in PAGE
+    Path("bench.csv").write_text("time,duty,position [V]\n0,0,0\n1,0,0\n")
+    said = []
+    for name, signals in (("run.csv", "signals.yaml"), ("bench.csv", None)):
+        with pytest.raises(InputError) as refused:
+            read_recording(name, signals=signals)
+        said.append(str(refused.value))
+    assert "```text\n" + "\n".join(said) + "\n```" in PAGE

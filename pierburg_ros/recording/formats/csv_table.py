@@ -1,4 +1,4 @@
-"""Reads CSV tables with a header as columns of numbers."""
+"""Reads CSV tables with a header as columns of numbers or stamps."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from pierburg_ros.errors import InputError, printable
 from pierburg_ros.intake import lines, opened, rows
 from pierburg_ros.recording.columns import FORM, Columns
 from pierburg_ros.recording.formats.format import Format
+from pierburg_ros.recording.formats.headings import TRUTH, Heading, is_number, is_units
 from pierburg_ros.recording.formats.messages import Wanted
+from pierburg_ros.recording.formats.stamps import NANOSECONDS, has_zone, is_stamp, nanoseconds
 
 MOST_CELLS = 1 << 25
 """Cells kept at most, 256 MiB: six hours of three columns at 500 Hz. The recording made of them takes five times it."""
 Table = Iterator[tuple[int, list[str]]]
 """Number of the line and cells of each row."""
-TRUTH = {"true": 1.0, "false": 0.0}
 NOTHING = float("nan")
 """Stands for an empty cell, which leaves a signal as it was."""
 
@@ -34,17 +35,19 @@ def read_table(path: Path, wanted: Wanted) -> Columns:
         return filled(name, *parted(name, rows(file, path.name, delimiter), delimiter), wanted)
 
 
-def parted(name: str, table: Table, delimiter: str) -> tuple[list[str], Table]:
-    """The names of the columns and the rows below: notes in front are passed over, but for a header that is one."""
+def parted(name: str, table: Table, delimiter: str) -> tuple[list[Heading], Table]:
+    """The heads of the columns and the rows below: notes in front are passed over, but for a header that is one."""
     note: list[str] = []
     for line, row in table:
         if is_note(row[0]):
             note = row
             continue
-        if not any(is_number(cell) for cell in row):
-            return names_of(row), table
+        if not any(is_number(cell) or is_stamp(cell.strip()) for cell in row):
+            if note and is_units(row):
+                return with_units(names_of(note), chain([(line, row)], table))
+            return with_units(names_of(row), table)
         if note:  # as NumPy writes it
-            return names_of([note[0].lstrip().removeprefix("#"), *note[1:]]), chain([(line, row)], table)
+            return names_of(note), chain([(line, row)], table)
         raise InputError(
             f"{name} has no header (its first row is {delimiter.join(row)[:60]}), {FORM}."
             " Add a first row with the names of the columns."
@@ -52,9 +55,17 @@ def parted(name: str, table: Table, delimiter: str) -> tuple[list[str], Table]:
     raise InputError(f"{name} is empty, expected a header and rows. Record again.")
 
 
-def names_of(row: list[str]) -> list[str]:
-    """The names of the columns in a header."""
-    return [cell.strip() for cell in row]
+def names_of(row: list[str]) -> list[Heading]:
+    """The heads of the columns in a header, perhaps one behind a mark for people."""
+    return [Heading.of(row[0].lstrip().removeprefix("#")), *map(Heading.of, row[1:])]
+
+
+def with_units(headings: list[Heading], table: Table) -> tuple[list[Heading], Table]:
+    """The same with the units of the row below, where that is one of units, and the rows that are left."""
+    line, row = next(table, (0, []))
+    if len(row) != len(headings) or not is_units(row):
+        return headings, chain([(line, row)] if row else [], table)
+    return [heading.below(line, cell) for heading, cell in zip(headings, row, strict=True)], table
 
 
 def is_note(text: str) -> bool:
@@ -62,12 +73,18 @@ def is_note(text: str) -> bool:
     return text.lstrip().startswith("#")
 
 
-def filled(name: str, header: list[str], table: Table, wanted: Wanted) -> Columns:
-    """The wanted columns, filled from the rows that are left."""
-    kept = {column: place for place, column in enumerate(header) if wanted(column)}
-    columns = Columns(name, tuple(header), {column: array("d") for column in kept}, {})
-    marks: dict[str, tuple[int, str]] = {}
-    cells = 0
+def filled(name: str, headings: list[Heading], table: Table, wanted: Wanted) -> Columns:
+    """The wanted columns, filled from the rows that are left; by their name as written, or without its unit."""
+    called = {place: key for place, each in enumerate(headings) if (key := key_of(each, wanted))}
+    header = tuple(called.get(place, each.written) for place, each in enumerate(headings))
+    columns = Columns(name, header, {column: array("d") for column in called.values()})
+    for place, column in called.items():
+        if headings[place].unit:
+            columns.units[column] = headings[place].unit
+        if (unclear := headings[place].unclear) is not None:
+            columns.unclear[column] = unclear
+    kept = {column: place for place, column in called.items()}
+    reader, cells = CellReader(columns), 0
     for line, row in table:
         if len(row) != len(header):
             raise InputError(
@@ -77,33 +94,74 @@ def filled(name: str, header: list[str], table: Table, wanted: Wanted) -> Column
         if cells > MOST_CELLS:
             raise InputError(f"{name} has more than {MOST_CELLS:,} numbers, expected fewer. Cut it into parts.")
         for column, place in kept.items():
-            columns.cells[column].append(number(columns, marks, column, line, row[place].strip()))
+            columns.cells[column].append(reader.value(column, line, row[place].strip()))
     if not cells:
         raise InputError(f"{name} holds no samples, only a header. Record again.")
-    if len(marks) > 1:
-        (first, point), (other, comma) = marks["."], marks[","]
-        raise InputError(
-            f"{name} has {point!r} in row {first} and {comma!r} in row {other}, expected one mark before the decimals."
-            " Write all numbers with a point, and none with a mark between thousands."
-        )
+    reader.check_marks()
     return columns
 
 
-def number(columns: Columns, marks: dict[str, tuple[int, str]], column: str, line: int, cell: str) -> float:
-    """A cell as a number; the first of a column that is none is noted, and the first with each decimal mark."""
-    if not cell:
-        return NOTHING
-    try:
-        value = float(cell)
-        if "." in cell:
-            marks.setdefault(".", (line, cell[:60]))
-    except ValueError:
-        value = decimal_comma(cell)
-        if "," in cell and value == value:
-            marks.setdefault(",", (line, cell[:60]))
-    if value != value or abs(value) == float("inf"):
-        columns.wrong.setdefault(column, (line, cell[:60]))
-    return value
+def key_of(heading: Heading, wanted: Wanted) -> str:
+    """The name by which a column is wanted, empty where it is not."""
+    return next((name for name in (heading.written, heading.bare) if wanted(name)), "")
+
+
+class CellReader:
+    """Reads cells as numbers or stamps; the first of a column that is neither is noted in its `columns`."""
+
+    def __init__(self, columns: Columns) -> None:
+        self.columns = columns
+        self.marks: dict[str, tuple[int, str]] = {}
+        """Row and text of the first number with each decimal mark."""
+        self.zoned: dict[str, bool] = {}
+        """Whether the stamps of a column say in which zone they count."""
+
+    def value(self, column: str, line: int, cell: str) -> float:
+        """A cell as a number, or as a stamp [s] since the origin of its column."""
+        if not cell:
+            self.columns.empty.setdefault(column, line)
+            return NOTHING
+        if column in self.zoned:
+            return self.stamp(column, line, cell)
+        value = self.number(line, cell)
+        if value != value and is_stamp(cell) and self.has_nothing(column):
+            return self.stamp(column, line, cell)
+        if value != value or abs(value) == float("inf"):
+            self.columns.wrong.setdefault(column, (line, cell[:60]))
+        return value
+
+    def has_nothing(self, column: str) -> bool:
+        """Whether all cells of the column have been empty so far."""
+        return all(value != value for value in self.columns.cells[column])
+
+    def number(self, line: int, cell: str) -> float:
+        """A cell as a number, NOTHING where it is none; the first with each decimal mark is noted."""
+        try:
+            value = float(cell)
+            if "." in cell:
+                self.marks.setdefault(".", (line, cell[:60]))
+        except ValueError:
+            value = decimal_comma(cell)
+            if "," in cell and value == value:
+                self.marks.setdefault(",", (line, cell[:60]))
+        return value
+
+    def stamp(self, column: str, line: int, cell: str) -> float:
+        """A stamp [s] since the origin of its column, which is the first one; NOTHING where it is none."""
+        stamp = nanoseconds(cell)
+        if stamp is None or self.zoned.setdefault(column, has_zone(cell)) != has_zone(cell):
+            self.columns.wrong.setdefault(column, (line, cell[:60]))
+            return NOTHING
+        return (stamp - self.columns.origins.setdefault(column, stamp)) / NANOSECONDS
+
+    def check_marks(self) -> None:
+        """Refuse numbers of which some have a point before their decimals, and some a comma."""
+        if len(self.marks) > 1:
+            (first, point), (other, comma) = self.marks["."], self.marks[","]
+            raise InputError(
+                f"{self.columns.name} has {point!r} in row {first} and {comma!r} in row {other}, expected one mark"
+                " before the decimals. Write all numbers with a point, and none with a mark between thousands."
+            )
 
 
 def decimal_comma(cell: str) -> float:
@@ -116,15 +174,6 @@ def decimal_comma(cell: str) -> float:
         return float(cell.replace(",", "."))
     except ValueError:
         return NOTHING
-
-
-def is_number(cell: str) -> bool:
-    """Whether `cell` reads as a number, with a point or a comma before its decimals."""
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
 
 
 FORMAT = Format("a .csv table", lambda path, _: path.suffix.lower() == ".csv", read_table)

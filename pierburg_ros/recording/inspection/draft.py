@@ -29,7 +29,7 @@ def draft(name: str, guesses: Iterable[Guess], time: TimeGuess | None, is_table:
     if time is not None:
         names = [quoted(name) for name in time.columns]
         column = names[0] if len(names) == 1 else f"[{', '.join(names)}]"
-        unit = f", unit: {time.unit}" if len(time.columns) == 1 else ""
+        unit = f", unit: {time.unit}" if time.unit and len(time.columns) == 1 else ""
         lines.append(f"time: {{column: {column}{unit}}}  # {printable(time.reason)}")
     elif is_table:
         lines.append("# time: no column rises from row to row. Name it: time: {column: NAME, unit: s}")

@@ -33,7 +33,8 @@ STAMP = {"sec", "nanosec"}
 class Field:
     """One number of a topic or of a table: where it stands, and values of it, shape (messages that were looked at,).
 
-    `path` is empty for a column; `file` is the table that it stands in where there are several.
+    `path` is empty for a column; `file` is the table that it stands in where there are several, and `unit` the one that
+    the table states of it, empty where none.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Field:
     path: str
     values: Signal
     file: str = ""
+    unit: str = ""
 
     @property
     def whole(self) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from pierburg_ros.recording.formats.cdr import JOINT_STATE
 from pierburg_ros.recording.inspection.fields import Field
 from pierburg_ros.recording.signals import SIGNALS, last_name
+from pierburg_ros.recording.units import COUNTS, unit_of
 
 WORDS = {
     "enabled": {"enabled", "enable", "powered", "on"},
@@ -47,6 +48,8 @@ CONVERTERS = (255, 1023, 4095, 16_383, 32_767, 65_535)
 """Largest counts of converters and timers of 8 to 16 bits."""
 CONVERTER_VOLTAGE = 3.3
 """Full scale [V] of most converters of microcontrollers."""
+MOST_OF_SENSORS = 6.0
+"""Voltage [V] up to which one without another name is taken for a sensor's; supplies have more."""
 BY_RANGE = 3
 """Rank of a guess from the range alone; those from the last word of a path, its others, and the topic are 0 to 2."""
 
@@ -80,23 +83,47 @@ def guess(field: Field) -> Guess | None:
     last = last | outer if field.path == "data" else last
     every = last | own | outer | words(field.name)
     for rank, names in enumerate((last, own | last, every)):
-        signal = signal_named(names, field.limits[1])
+        signal = signal_named(names, field.limits[1], field.unit)
         if signal is not None:
             return known_as(field, signal, rank, last | own | outer)
+    if field.unit not in ("", COUNTS):
+        signal = signal_in(field.unit, field.limits[1])
+        return known_as(field, signal, BY_RANGE, set()) if signal else None
     ranged = by_range(field)
     is_command = every & COMMANDS and (ranged is None or ranged.signal != "duty")
     return known_as(field, "setpoints", BY_RANGE, last | own) if is_command else ranged
 
 
-def signal_named(names: set[str], largest: float) -> str | None:
-    """The signal that words in a name speak for; a voltage is a sensor's or the supply by its `largest` value."""
+def signal_named(names: set[str], largest: float, unit: str = "") -> str | None:
+    """The signal that words in a name speak for, one that a stated `unit` measures.
+
+    A voltage is a sensor's or the supply by its `largest` value.
+    """
     for signal, known in WORDS.items():
-        if names & known:
+        if names & known and fits(signal, unit):
             applied, wanted = signal == "duty" and "applied" in names, signal == "position" and names & COMMANDS
             return "applied_duty" if applied else "setpoints" if wanted else signal
-    if names & {"voltage", "volts", "volt"}:
-        return "hall_voltage" if largest <= 6.0 else "supply_voltage"
-    return next((SIGNAL_OF_UNIT[unit] for unit in units_in(names) if unit in SIGNAL_OF_UNIT), None)
+    if names & {"voltage", "volts", "volt"} and fits("hall_voltage", unit):
+        return voltage(largest, unit)
+    named = (SIGNAL_OF_UNIT[each] for each in units_in(names) if each in SIGNAL_OF_UNIT)
+    return None if unit else next(named, None)
+
+
+def fits(signal: str, unit: str) -> bool:
+    """Whether a `unit`, if one is stated, measures the signal."""
+    return not unit or any(unit_of(unit).measures(each) for each in SIGNALS[signal].units)
+
+
+def signal_in(unit: str, largest: float) -> str | None:
+    """The signal that a stated unit alone speaks for."""
+    if fits("hall_voltage", unit):
+        return voltage(largest, unit)
+    return next((signal for signal in dict.fromkeys(SIGNAL_OF_UNIT.values()) if fits(signal, unit)), None)
+
+
+def voltage(largest: float, unit: str) -> str:
+    """Whether a voltage is a sensor's or the supply, by its largest value."""
+    return "hall_voltage" if largest * unit_of(unit or "V").factor <= MOST_OF_SENSORS else "supply_voltage"
 
 
 def units_in(names: set[str]) -> list[str]:
@@ -116,31 +143,41 @@ def known_as(field: Field, signal: str, rank: int, names: set[str]) -> Guess | N
         return None
     low, high = field.limits or (0.0, 0.0)
     named = next(iter(units_in(names)), "")
-    unit, scale, offset = in_unit(field, signal, named, max(abs(low), abs(high)))
+    unit, scale, offset = stated_or(in_unit(field, signal, named, max(abs(low), abs(high))), field.unit)
+    if unit == COUNTS and scale == 1.0:
+        return None
     told = "JointState, " if field.type == JOINT_STATE else ""
     told += "a torque or a current as its driver says, " if told and signal == "torque" else ""
     return Guess(field, signal, unit, scale, offset, f"{told}{low:.4g} to {high:.4g}", rank)
 
 
+def stated_or(guessed: tuple[str, float, float], stated: str) -> tuple[str, float, float]:
+    """Unit, scale and offset as the table states the unit, or else as `guessed`."""
+    if not stated or stated == guessed[0]:
+        return guessed
+    return stated, 1.0, 0.0
+
+
 def in_unit(field: Field, signal: str, named: str, largest: float) -> tuple[str, float, float]:
     """Unit, scale and offset of a field that is taken for `signal`; `largest` is its magnitude."""
-    counted = field.whole and largest > 100.0
+    counted = field.unit == COUNTS or (field.whole and largest > 100.0)
     if signal in ("duty", "applied_duty"):
-        if named == "percent" or (1.0 < largest <= 100.0):
+        if named == "percent" or (1.0 < largest <= 100.0 and field.unit != COUNTS):
             return "percent", 1.0, 0.0
-        return ("counts", 1.0 / full_scale(largest), 0.0) if largest > 100.0 else ("1", 1.0, 0.0)
+        is_counted = largest > 100.0 or field.unit == COUNTS
+        return (COUNTS, 1.0 / full_scale(largest), 0.0) if is_counted else ("1", 1.0, 0.0)
     if signal in ("position", "setpoints"):
         if field.type == JOINT_STATE or named == "rad":
             return "rad", 1.0, 0.0
-        if named == "counts" or (counted and largest > DEGREES):
-            return "counts", TURN / (full_scale(largest) + 1), 0.0
+        if COUNTS in (named, field.unit) or (counted and largest > DEGREES):
+            return COUNTS, TURN / (full_scale(largest) + 1), 0.0
         return ("deg" if named == "deg" or TURN < largest <= DEGREES else "rad"), 1.0, 0.0
     if signal == "speed":
         return (named if named == "rpm" else "deg/s" if named == "deg" else "rad/s"), 1.0, 0.0
     if signal == "hall_voltage":
         if named == "mV" or (largest > 100.0 and not field.whole):
             return "mV", 1.0, 0.0
-        return ("counts", CONVERTER_VOLTAGE / (full_scale(largest) + 1), 0.0) if counted else ("V", 1.0, 0.0)
+        return (COUNTS, CONVERTER_VOLTAGE / (full_scale(largest) + 1), 0.0) if counted else ("V", 1.0, 0.0)
     if signal == "supply_voltage":
         return ("mV" if named == "mV" or largest > 1000.0 else "V"), 1.0, 0.0
     if signal == "current":

@@ -11,6 +11,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.recording.columns import Columns
 from pierburg_ros.recording.formats import format_of
+from pierburg_ros.recording.formats.headings import Heading
 from pierburg_ros.recording.inspection.content import Guesses, TopicContent, contents_of, rate
 from pierburg_ros.recording.inspection.fields import Field
 from pierburg_ros.recording.inspection.guesses import Guess, guess
@@ -44,11 +45,12 @@ def columns(
     first = None
     for file, table in tables.items():
         cells = {name: np.frombuffer(values, np.float64) for name, values in table.cells.items()}
-        clock = time_guess(cells)
+        clock = time_guess(cells, {name: stated(table, name) for name in cells}, table.origins)
         first = first or clock
         for name, values in cells.items():
-            field = Field(name, COLUMN, "", values[np.isfinite(values)], file)
-            guessed[field] = None if clock and name in clock.columns else guess(field)
+            field = Field(name, COLUMN, "", values[np.isfinite(values)], file, stated(table, name))
+            is_time = name in table.origins or (clock is not None and name in clock.columns)
+            guessed[field] = None if is_time else guess(field)
             contents.append(column_content(field, values, clock, chosen, guessed))
     return tuple(contents), guessed, first
 
@@ -62,7 +64,7 @@ def column_content(
     low, high = field.limits or (None, None)
     contents = contents_of([field], guessed)
     if clock and field.name in clock.columns:
-        unit = f" [{clock.unit}]" if len(clock.columns) == 1 else ""
+        unit = "" if len(clock.columns) > 1 else f" [{clock.unit}]" if clock.unit else ", stamps"
         contents = tuple(replace(each, could_be=f"{low:.6g} to {high:.6g}: time{unit}?") for each in contents)
     return TopicContent(
         f"{field.file} {field.name}".lstrip(),
@@ -79,11 +81,16 @@ def column_content(
     )
 
 
+def stated(table: Columns, name: str) -> str:
+    """The unit that a table states of a column, empty where it is not clear."""
+    return "" if name in table.unclear else table.units.get(name, "")
+
+
 def used_as(field: Field, chosen: SignalMap) -> str | None:
     """The signal that a column is read as: as a person chose, or by its own name."""
     called = {column: signal for signal, column in chosen.columns.items()}
     called |= dict.fromkeys(chosen.time.columns if chosen.time else (TIME,), TIME)
-    signal = called.get(field.name)
+    signal = called.get(field.name) or called.get(Heading.of(field.name).bare)
     source = chosen.sources.get(signal or "")
     elsewhere = field.file not in (source.files or ("",)) if source else bool(field.file) and signal != TIME
     return None if elsewhere else signal

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +34,7 @@ SECONDS = re.compile(r"(?:^|[^a-z])(secs?|seconds)$", re.I)
 
 @dataclass(frozen=True)
 class TimeGuess:
-    """The columns of the time, their unit and why; `seconds` are the times, since the first."""
+    """The columns of the time, their unit and why; `seconds` are the times, since the first. Stamps have no unit."""
 
     columns: tuple[str, ...]
     unit: str
@@ -42,8 +42,14 @@ class TimeGuess:
     seconds: Signal
 
 
-def time_guess(columns: Mapping[str, Signal]) -> TimeGuess | None:
-    """The time among `columns` of numbers, None where none rises from row to row."""
+def time_guess(
+    columns: Mapping[str, Signal], units: Mapping[str, str] | None = None, stamped: Collection[str] = ()
+) -> TimeGuess | None:
+    """The time among `columns` of numbers, None where none rises from row to row.
+
+    `units` are those that the table states, and `stamped` the columns of stamps, which are times [s].
+    """
+    units = units or {}
     rising = {name: values for name, values in columns.items() if rises(values)}
     whole = [name for name, values in columns.items() if SECONDS.search(name) and never_falls(values)]
     parts = [name for name in columns if NANOSECONDS.search(name)]
@@ -51,11 +57,15 @@ def time_guess(columns: Mapping[str, Signal]) -> TimeGuess | None:
         values = columns[whole[0]] - columns[whole[0]][0] + 1e-9 * columns[parts[0]]
         if rises(values):
             return TimeGuess((whole[0], parts[0]), "s", "stamps of ROS in two columns", values - values[0])
-    named = [name for name in rising if NAMES.search(name)] or list(rising)
+    if stamps := next((name for name in rising if name in stamped), ""):
+        return TimeGuess((stamps,), "", "stamps of ISO 8601", rising[stamps] - rising[stamps][0])
+    usual = [name for name in rising if units.get(name, "") in FACTORS or not units.get(name)]
+    named = [name for name in usual if NAMES.search(name) or units.get(name)] or usual
     if not named:
         return None
     name = named[0]
-    unit, reason = unit_guess(name, rising[name])
+    stated = units.get(name, "")
+    unit, reason = (stated, "as the table says") if stated else unit_guess(name, rising[name])
     return TimeGuess((name,), unit, reason, (rising[name] - rising[name][0]) * FACTORS[unit])
 
 

@@ -13,8 +13,8 @@ from pierburg_ros.errors import InputError, near
 from pierburg_ros.intake import Document, parsed, text_of
 from pierburg_ros.recording.signal_map.field_path import FieldPath, field_path
 from pierburg_ros.recording.signal_map.source import SignalMap, Source, TimeSource
-from pierburg_ros.recording.signal_map.units import COUNTS, USUAL, Unit, unit_of
 from pierburg_ros.recording.signals import SIGNALS, TIME, signal_of
+from pierburg_ros.recording.units import COUNTS, USUAL, Unit, unit_of
 
 KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
 TIME_KEYS = ("topic", "field", "column", "unit")
@@ -112,6 +112,7 @@ class Entry:
             self.files(),
             self.origin,
             "" if unit.written in (COUNTS, "1") else next(each for each in wanted if unit.measures(each)),
+            "unit" in self.given or "scale" in self.given,
         )
 
     def time(self) -> TimeSource:
@@ -125,7 +126,9 @@ class Entry:
         column = self.given["column"]
         if isinstance(column, list) and len(column) == 2 and all(isinstance(each, str) and each for each in column):
             return TimeSource(columns=tuple(column), origin=self.origin)
-        return TimeSource(columns=(self.text("column"),), unit=unit.factor, origin=self.origin)
+        return TimeSource(
+            columns=(self.text("column"),), unit=unit.factor, origin=self.origin, scaled="unit" in self.given
+        )
 
     def check_keys(self, known: tuple[str, ...]) -> None:
         """Refuse what is no mapping of the `known` keys."""

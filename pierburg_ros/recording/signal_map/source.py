@@ -18,7 +18,8 @@ class Source:
 
     `kind` is topic, column, or either where only a name was given. `measures` is the unit of SI of what the written
     unit measures, rad or m; empty for counts and where none is written. `files` are the parts of a table, in order, in
-    which the column stands; none for the recording itself. `origin` says where all of it was written.
+    which the column stands; none for the recording itself. `origin` says where all of it was written. Where it is not
+    `scaled`, neither unit nor scale is written, and the unit that a table states counts.
     """
 
     kind: str
@@ -31,6 +32,7 @@ class Source:
     files: tuple[str, ...] = ()
     origin: str = "--topic"
     measures: str = ""
+    scaled: bool = False
 
     def values(self, raw: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values [SI] of `raw` numbers."""
@@ -42,7 +44,7 @@ class Source:
 class TimeSource:
     """What the times of the samples are: a field of messages, or a column, or two of them as [s] and [ns].
 
-    `unit` [s] is that of a number; a stamp has its own.
+    `unit` [s] is that of a number, where it is not `scaled` the one that a table states; a stamp has its own.
     """
 
     topic: str = ""
@@ -50,6 +52,7 @@ class TimeSource:
     columns: tuple[str, ...] = ()
     unit: float = 1.0
     origin: str = "--topic"
+    scaled: bool = False
 
 
 @dataclass(frozen=True)

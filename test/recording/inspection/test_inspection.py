@@ -94,3 +94,32 @@ def test_what_nothing_speaks_for_is_said_in_the_draft(tmp_path):
     text = inspect(path).signals
     assert "# Nothing looks like an input" in text and "# Nothing looks like a measured signal" in text
     assert "# time: no column rises from row to row." in text
+
+
+@pytest.mark.parametrize("head", ["stamp,pwm,u_1,x\n-,%,mV,deg\n", "stamp,pwm [%],u_1 (mV),x [deg]\n"])
+@pytest.mark.parametrize("zone", ["", "Z"])
+def test_units_and_stamps_of_a_table_are_in_its_draft(tmp_path, head, zone):
+    """What is in percent, mV and degrees is less than 1 here: no range would say so."""
+    rows = "".join(f"2026-03-01 12:00:0{k // 10}.{k % 10}{zone},{k / 50},{k / 40},{k / 30}\n" for k in range(50))
+    path = tmp_path / "bench.csv"
+    path.write_text(head + rows)
+    topics = {topic.name.split()[0]: topic for topic in inspect(path).topics}
+    assert topics["stamp"].fields[0].could_be == "0 to 4.9: time, stamps?"
+    assert topics["pwm"].fields[0].could_be == "0 to 0.98: duty [percent]?"
+    assert topics["u_1"].fields[0].could_be == "0 to 1.225: hall voltage [mV]?"
+    recording = drafted(tmp_path, path)
+    np.testing.assert_allclose(recording.time, 0.1 * np.arange(50), atol=1e-9)
+    np.testing.assert_allclose(recording.command.values, np.arange(50) / 5000, atol=1e-12)
+    np.testing.assert_allclose(recording.measured, np.arange(50) / 40_000, atol=1e-12)
+
+
+def test_columns_with_units_are_read_by_their_bare_names(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time [ms],duty [%],position (deg)\n0,0,0\n2,50,90\n")
+    assert [topic.read_as for topic in inspect(path).topics] == ["time", "duty", "position"]
+
+
+def test_counts_that_a_table_states_get_the_scale_of_a_converter(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time,duty,hall\ns,1,counts\n" + "".join(f"{k / 100},{k / 100},{20 * k}\n" for k in range(50)))
+    assert drafted(tmp_path, path).measured[-1] == pytest.approx(980 * 3.3 / 1024)

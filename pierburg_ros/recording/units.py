@@ -1,4 +1,4 @@
-"""Units as signal maps write them: those of SI with prefixes, and deg, rpm, percent and counts."""
+"""Units as signal maps and tables write them: those of SI with prefixes, and deg, rpm, percent and counts."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pierburg_ros.recording.signal_map.units import unit_of
+from pierburg_ros.recording.units import unit_of
 
 
 @pytest.mark.parametrize(
