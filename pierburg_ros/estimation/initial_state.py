@@ -45,7 +45,7 @@ samples is rounded by less than 250 x 1.1e-16 = 2.8e-14 of them."""
 
 @dataclass(frozen=True)
 class InitialState:
-    """What the first samples of a recording say: level, rate [1/s] and noise, in the measured unit.
+    """What the first samples of a recording say: level, rate [1/s], curvature [1/s^2] and noise, in the measured unit.
 
     It is `known` where the shaft stands still or creeps. `angle` [rad] is what else is known of the angle where the
     speed is measured; else the shaft is taken to begin where its load lets it rest.
@@ -56,6 +56,7 @@ class InitialState:
     noise: float
     known: bool
     angle: float = math.nan
+    curvature: float = 0.0
 
     @staticmethod
     def of(time: Signal, measured: Signal) -> InitialState:
@@ -72,8 +73,11 @@ class InitialState:
         rate, level = np.polyfit(elapsed, first, 1)
         return InitialState(float(level), float(rate), noise, known)
 
-    def state(self, model: Model, quantity: str) -> tuple[float, float]:
-        """Angle [rad] and velocity [rad/s] at the first sample; exactly on a stop where noise allows it."""
+    def state(self, model: Model, quantity: str) -> tuple[float, float, float]:
+        """Angle [rad], velocity [rad/s] and acceleration [rad/s^2] at the first sample, which matter to a slow sensor.
+
+        Exactly on a stop where noise allows it.
+        """
         if quantity == "speed":
             return self._turning(model)
         angle = decoded_value(model, self.level, quantity)
@@ -81,21 +85,22 @@ class InitialState:
         margin = 3.0 * self.noise / abs(per_radian)
         lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
         if angle <= lower + margin:
-            return lower, 0.0
+            return lower, 0.0, 0.0
         if angle >= upper - margin:
-            return upper, 0.0
+            return upper, 0.0, 0.0
         if self.rate == 0.0:
-            return angle, 0.0
-        velocity = self.rate / per_radian
+            return angle, 0.0, 0.0
         lag, play = trail(model)
-        return angle + lag * velocity + 0.5 * play * float(np.sign(velocity)), velocity
+        shown, acceleration = self.rate / per_radian, self.curvature / per_radian
+        velocity = shown + lag * acceleration
+        return angle + lag * shown + 0.5 * play * float(np.sign(velocity)), velocity, acceleration
 
-    def _turning(self, model: Model) -> tuple[float, float]:
+    def _turning(self, model: Model) -> tuple[float, float, float]:
         """The same where the speed is measured; at rest where noise allows it."""
         angle = rest_angle(model) if math.isnan(self.angle) else self.angle
         velocity = decoded_value(model, self.level, "speed")
         margin = 3.0 * self.noise * abs(angle_per_unit(model))
-        return angle, 0.0 if abs(velocity) <= margin else velocity
+        return angle, 0.0 if abs(velocity) <= margin else velocity, 0.0
 
 
 def rest_angle(model: Model) -> float:

@@ -198,7 +198,7 @@ def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> 
     before the recording began.
     """
     inputs = inputs_of(recording)
-    angle, _ = start.state(model, recording.quantity)
+    angle, *_ = start.state(model, recording.quantity)
     return inputs.held_before() if angle > model.actuator.lower_stop else inputs
 
 

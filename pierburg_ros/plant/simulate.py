@@ -66,16 +66,18 @@ def simulate(
     sample_times: ArrayLike,
     initial_angle: float = 0.0,
     initial_velocity: float = 0.0,
+    initial_acceleration: float = 0.0,
 ) -> Signal:
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
-    No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s]; loads go by
-    the time of the samples, and a command from before the first one is under way. Not a number from where a parameter
+    No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s], a sensor
+    with a lag as after an even `initial_acceleration` [rad/s^2]. Loads go by the time of the samples, and a command
+    from before the first one is under way. Not a number from where a parameter
     set cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
-    _run_into(output, model, inputs, times, initial_angle, initial_velocity)
+    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration)
     return output
 
 
@@ -108,12 +110,13 @@ def simulate_switched(
     sample_times: ArrayLike,
     initial_angle: float = 0.0,
     initial_velocity: float = 0.0,
+    initial_acceleration: float = 0.0,
 ) -> Signal:
     """`simulate` of `model`, with `after` taking over the running state at `switch_time` [s]."""
     times = _increasing(sample_times)
     output = np.empty(times.size)
     split = int(np.searchsorted(times, switch_time))
-    state = _begun(model, inputs, times[0], initial_angle, initial_velocity)
+    state = _begun(model, inputs, times[0], initial_angle, initial_velocity, initial_acceleration)
     for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
         if last > first:
             _continue_into(output[first:last], part, state, inputs, times[first:last])
@@ -161,17 +164,22 @@ def simulate_stretches(
 
 
 def _run_into(
-    output: Signal, model: Model, inputs: Inputs, times: Signal, initial_angle: float, initial_velocity: float
+    output: Signal,
+    model: Model,
+    inputs: Inputs,
+    times: Signal,
+    angle: float,
+    velocity: float,
+    acceleration: float = 0.0,
 ) -> None:
     state = np.zeros(1, STATE)
-    run_from(
-        model.record()[0], state[0], *_channels(inputs), times, float(initial_angle), float(initial_velocity), output
-    )
+    start = float(angle), float(velocity), float(acceleration)
+    run_from(model.record()[0], state[0], *_channels(inputs), times, *start, output)
 
 
-def _begun(model: Model, inputs: Inputs, time: float, angle: float, velocity: float) -> np.ndarray:
+def _begun(model: Model, inputs: Inputs, time: float, angle: float, velocity: float, acceleration: float) -> np.ndarray:
     """State record, shape (1,), at `time` [s], with the inputs from before it under way."""
-    state = new_state(model.record(), angle, velocity)
+    state = new_state(model.record(), angle, velocity, acceleration)
     begin(model.record()[0], state[0], *_channels(inputs), time)
     return state
 
@@ -218,9 +226,9 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
 
 
 @kernel
-def run_from(p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, output):
-    """`run` from `angle` [rad] with `velocity` [rad/s] at the first sample; `s` is all zeros."""
-    place(p, s, angle, velocity)
+def run_from(p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, acceleration, output):
+    """`run` from where `place` puts `s` at the first sample; `s` is all zeros."""
+    place(p, s, angle, velocity, acceleration)
     begin(p, s, input_times, command, supply_voltage, enabled, sample_times[0])
     run(p, s, input_times, command, supply_voltage, enabled, sample_times, output)
 
@@ -233,7 +241,7 @@ def run_stretches(
     for stretch in range(first.size):
         end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
         times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
-        place(p, states[stretch], angle[stretch], velocity[stretch])
+        place(p, states[stretch], angle[stretch], velocity[stretch], 0.0)
         show(states[stretch], lagged[stretch])
         begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
         run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)

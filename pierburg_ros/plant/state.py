@@ -83,18 +83,21 @@ STATE = np.dtype(
 """What a plant remembers; `s.<effect>.<name>` are the states that effects declare, all 0 at the start."""
 
 
-def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> np.ndarray:
-    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current, cold."""
+def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0, acceleration: float = 0.0) -> np.ndarray:
+    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current, cold.
+
+    Its sensor is as after motion with an even `acceleration` [rad/s^2].
+    """
     state = np.zeros(1, STATE)
-    place(record[0], state[0], angle, velocity)
+    place(record[0], state[0], angle, velocity, acceleration)
     return state
 
 
 @kernel
-def place(p, s, angle, velocity):
-    """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed, its sensor as after even motion.
+def place(p, s, angle, velocity, acceleration):
+    """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed.
 
-    `s` is all zeros.
+    Its sensor is as after motion with an even `acceleration` [rad/s^2]; `s` is all zeros.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
     shaft slides as far as that bends them.
@@ -106,7 +109,7 @@ def place(p, s, angle, velocity):
     s.sensor_hysteresis.followed = sensed(p, s)
     lag, play = trail(p)
     s.sensor_hysteresis.magnet = sensed(p, s) - 0.5 * play * np.sign(velocity)
-    s.sensor_lag.lagged = s.sensor_hysteresis.magnet - lag * velocity
+    s.sensor_lag.lagged = s.sensor_hysteresis.magnet - lag * (velocity - lag * acceleration)
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1
     s.supply = np.nan

@@ -35,6 +35,7 @@ class Motion:
     time: Signal
     angle: Signal
     velocity: Signal
+    acceleration: Signal
     command: Signal
     moving: Flags
     closed: Flags
@@ -122,6 +123,7 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
         time=run.time - run.time[0],
         angle=angle,
         velocity=velocity,
+        acceleration=slope(run.time, velocity, half),
         command=command,
         moving=np.abs(velocity) > slowest,
         closed=angle <= actuator.lower_stop + near,

@@ -90,6 +90,9 @@ def _start(run: Run, motion: Motion, sample: int) -> InitialState:
     stands = motion.closed[sample] or motion.open[sample] or not motion.moving[sample]
     if run.quantity == "speed":
         return InitialState(float(run.measured[sample]), 0.0, run.start.noise, True, float(motion.angle[sample]))
-    rate = 0.0 if stands else float(motion.velocity[sample]) / motion.angle_per_unit
+    rate, curvature = (
+        0.0 if stands else float(course[sample]) / motion.angle_per_unit
+        for course in (motion.velocity, motion.acceleration)
+    )
     level = float(np.mean(run.measured[near])) - rate * middle
-    return InitialState(level, rate, run.start.noise, True, float(motion.angle[sample]))
+    return InitialState(level, rate, run.start.noise, True, float(motion.angle[sample]), curvature)
