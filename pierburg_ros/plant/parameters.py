@@ -84,8 +84,8 @@ def pack(
     `drive` and `sensor` are the places of their kinds in `DRIVES` and `SENSORS`, `sensor_span` [rad] is the angle
     between the two Hall end voltages.
     `agility` is one over the inertia; `plain` says that torques are straight lines of angle and velocity between
-    events, `finest` [rad] over which travel torques may bend throughout, `ripple` [rad] the same of a ripple. `creeps` says that states of drive or sensor
-    change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
+    events, `finest` [rad] over which travel torques may bend throughout, `ripple` [rad] the same of a ripple.
+    `creeps` says that states of drive or sensor change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
     """
     record = np.zeros(1, PARAMETERS)
     for name in BASE:

@@ -24,6 +24,7 @@ from pierburg_ros.plant.motion.events import (
     motor_onset,
     next_step,
     shorter,
+    shortest,
     upper,
 )
 from pierburg_ros.plant.motion.watch import due, put
@@ -34,6 +35,10 @@ FLOOR = 1e-4
 """Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0.
 
 Standing or sliding: teeth that damp a sliding shaft alone would send it back at once where they set it moving."""
+UNTOUCHED = 1e-3
+"""Share of the time in which teeth and back-EMF stop the motor within which it counts as no faster."""
+TINY = 1e-300
+"""Damping [N.m.s/rad] in place of none."""
 CLOSE = 1e-6
 """Share of a travel within which its end is found where no straight line holds."""
 DOUBLINGS = 60
@@ -108,9 +113,7 @@ def _held(p, s, deflection, stiffness, damping, motor_velocity, angle, velocity,
     if s.direction == 0.0:
         return Grip(deflection, stiffness, damping, 0.0, 0.0, 0.0, 0.0, 0.0)
     push = stiffness * deflection + damping * motor_velocity
-    _, resisting, bending, viscous, friction = shaft.settled(
-        p, s, push, damping, angle, velocity, bristle, time, motor
-    )
+    _, resisting, bending, viscous, friction = shaft.settled(p, s, push, damping, angle, velocity, bristle, time, motor)
     return Grip(deflection, stiffness, damping, resisting, bending, viscous, friction, 1.0 / (damping + viscous))
 
 
@@ -279,7 +282,7 @@ def _enough(p, s, grip, line):
 
 @kernel
 def _bent(p, s, grip, sides, step):
-    """The same where no straight line holds in the shortest step: its travel by Euler's implicit rule, as stiff as may be.
+    """The same where no straight line holds in the shortest step: the shaft by Euler's implicit rule, however stiff.
 
     The travel is that at whose end the torques balance at the velocity which leads there.
     """
@@ -395,8 +398,11 @@ def _set_directions(p, s):
 
 @kernel
 def _breaking_time(p, s, grip, line, step):
+    """When within a `step` [s] a side breaks loose or rests: so well that the motor is no faster for it."""
     early, late = 0.0, step
-    while late - early > SAME_MOMENT * p.own.time:
+    settling = p.total_inertia / max(line.slope + grip.damping, TINY)
+    found = max(min(shortest(p), UNTOUCHED * settling), SAME_MOMENT * p.own.time)
+    while late - early > found:
         middle = 0.5 * (early + late)
         if _breaks(p, s, _trial(p, s, grip, line, middle), middle):
             late = middle

@@ -18,8 +18,8 @@ LEAST_DAMPING = 6e-5
 """Damping of a shaft that nothing damps, as a share of stall torque over no-load speed: a hundredth of the one moves it
 at a hundred times the other, at once for all purposes."""
 FOLD = 0.01
-"""Share of the teeth's damping below which what damps the shaft does not fall with the friction: a step that is good to a
-hundredth of a jump needs no more, and where a balance ends its velocity changes without bound."""
+"""Share of the teeth's damping below which what damps the shaft does not fall with the friction: where a balance ends,
+its velocity would change without bound."""
 NEWTON = 6
 """Tangents tried for a velocity; each doubles the digits of one that is near."""
 STRIDE = 0.25

@@ -67,8 +67,8 @@ def relaxed_current(p, s, duration):
 def warm(p, s, travel, change, duration):
     """Heat the winding for `duration` [s] with the mean current, from the motor's `travel` [rad] and `change` [A].
 
-    Equation (5) of the paper, averaged: voltage = R i + inductance di/dt + k_g k_m w. As the winding warms it draws less
-    from a voltage, which is part of the step: a winding that holds next to no heat would warm and cool in turns else.
+    Equation (5) of the paper, averaged: voltage = R i + inductance di/dt + k_g k_m w. A winding draws
+    less from a voltage as it warms, within the step too: one that holds no heat would warm and cool in turns else.
     """
     rise, power, falling = s.thermal_resistance.rise, 0.0, 0.0
     if s.closed_bridge:

@@ -18,8 +18,8 @@ from pierburg_ros.kernel import kernel
 NOTHING = 4e-10
 """Share of the stall torque that is no push: bristles have come to rest when nothing more than this drives them."""
 LEAST_LEAN = 1e-8
-"""Share of the travel below which a bristle that slides has no lean of its own: a twentieth of the error that a step may
-make. It would change its lean within a step as short as one likes, and be no number where the friction fades away."""
+"""Share of the travel below which a sliding bristle has no lean of its own: a twentieth of the error that a step may
+make. It would change its lean within any step, and be no number where the friction fades away."""
 
 
 @kernel
