@@ -85,7 +85,8 @@ def pack(
     between the two Hall end voltages.
     `agility` is one over the inertia; `plain` says that torques are straight lines of angle and velocity between
     events, `finest` [rad] over which travel torques may bend throughout, `ripple` [rad] the same of a ripple.
-    `creeps` says that states of drive or sensor change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
+    `creeps` says that states of drive or sensor change between events, `sensor_moves` that those of the sensor do;
+    `serial` tells one record from any other.
     """
     record = np.zeros(1, PARAMETERS)
     for name in BASE:
