@@ -74,12 +74,16 @@ def bearing(p, bristle, level, direction, velocity):
 
 
 @kernel
-def moved(p, bristle, level, travel):
-    """Bristle deflection [rad] after the shaft has gone `travel` [rad] one way, at constant `level` [N.m].
+def moved(p, bristle, before, after, travel):
+    """Bristle deflection [rad] after the shaft has gone `travel` [rad] one way, its level going over evenly [N.m].
 
-    With constant level the law depends on the path alone, so this is its exact solution.
+    The law depends on the path alone, and this is its exact solution but that the path over which bristles forget is
+    that of the mean level. However short it is beside the travel, they end behind the level by what it changes in it.
     """
-    if level <= 0.0:
-        return 0.0
-    limit = math.copysign(level / p.stiffness, travel)
-    return limit + (bristle - limit) * math.exp(-abs(travel) * p.stiffness / level)
+    level = 0.5 * (before + after)
+    if level <= 0.0 or travel == 0.0:
+        return bristle if travel == 0.0 else 0.0
+    reach = abs(travel) * p.stiffness / level
+    first, last = math.copysign(before / p.stiffness, travel), math.copysign(after / p.stiffness, travel)
+    faded = math.expm1(-reach)
+    return last + (bristle - first) * (1.0 + faded) + (last - first) * faded / reach

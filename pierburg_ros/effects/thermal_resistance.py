@@ -70,12 +70,13 @@ def resistance(p, cold_resistance, rise):
 
 
 @kernel
-def heated(p, rise, power, duration):
-    """Temperature rise [K] after `duration` [s] at constant `power` [W]."""
-    final = power * p.thermal_resistance
+def heated(p, rise, power, falling, duration):
+    """Temperature rise [K] after `duration` [s] at a `power` [W] that is `falling` by so much each kelvin [W/K]."""
+    leaving = 1.0 / p.thermal_resistance + falling
+    final = (power + falling * rise) / leaving
     if p.heat_capacity == 0.0:
         return final
-    share = duration / (p.thermal_resistance * p.heat_capacity)
+    share = duration * leaving / p.heat_capacity
     if share < SHORT:
         return rise + (final - rise) * share * (1.0 - 0.5 * share * (1.0 - share / 3.0 * (1.0 - 0.25 * share)))
     return final + (rise - final) * math.exp(-share)

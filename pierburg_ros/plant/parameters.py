@@ -57,7 +57,7 @@ PARAMETERS = np.dtype(
     [(name, np.float64) for name in BASE]
     + [("lower_stop", np.float64), ("upper_stop", np.float64)]
     + [("drive", np.int64), ("sensor", np.int64), ("sensor_span", np.float64)]
-    + [("agility", np.float64), ("own", OWN), ("serial", np.int64), ("finest", np.float64)]
+    + [("agility", np.float64), ("own", OWN), ("serial", np.int64), ("finest", np.float64), ("ripple", np.float64)]
     + [("plain", np.bool_), ("sensor_moves", np.bool_), ("creeps", np.bool_)]
     + [(effect.id, [(name, np.float64) for name in effect.names]) for effect in EFFECTS]
     + [("residual", RESIDUAL)],
@@ -101,8 +101,9 @@ def pack(
     `drive` and `sensor` are the places of their kinds in `DRIVES` and `SENSORS`, `sensor_span` [rad] is the angle
     between the two Hall end voltages.
     `agility` is one over the inertia; `plain` says that torques are straight lines of angle and velocity between
-    events, `finest` [rad] over which travel torques may bend throughout. `creeps` says that states of drive or sensor
-    change between events, `sensor_moves` that those of the sensor do; `serial` tells one record from any other.
+    events, `finest` [rad] over which travel torques may bend throughout, `ripple` [rad] the same of a ripple.
+    `creeps` says that states of drive or sensor change between events, `sensor_moves` that those of the sensor do;
+    `serial` tells one record from any other.
     """
     record = np.zeros(1, PARAMETERS)
     record.view(np.float64)[_PLACES] = [values[name] for name in _NUMBERS]
@@ -116,18 +117,25 @@ def pack(
     plain = all(effect.linear for effect in present) and values["gravity_torque"] == 0.0 and residual is None
     record["plain"] = plain
     record["creeps"], record["sensor_moves"] = bool(creeping), "sensor" in creeping
-    record["finest"] = _finest(present, values, residual)
+    rippling = [effect for effect in present if effect.ripple is not None]
+    record["ripple"] = _finest(rippling, values)
+    smooth = [effect for effect in present if effect.ripple is None]
+    record["finest"] = min(_finest(smooth, values), _shaped(values, residual))
     record["serial"] = next(_serial)
     return record
 
 
-def _finest(present: Sequence[Effect], values: Mapping[str, float], residual: Mapping[str, Any] | None) -> float:
-    """Travel [rad] within which no torque over the angle turns more than once."""
-    features = [effect.turns_within(values) for effect in present if effect.turns_within is not None]
-    features.append(0.5 if values["gravity_torque"] != 0.0 else math.inf)
+def _finest(effects: Sequence[Effect], values: Mapping[str, float]) -> float:
+    """Travel [rad] within which no torque of these effects turns more than once over the angle."""
+    return min((effect.turns_within(values) for effect in effects if effect.turns_within is not None), default=math.inf)
+
+
+def _shaped(values: Mapping[str, float], residual: Mapping[str, Any] | None) -> float:
+    """The same of gravity and of a residual torque."""
+    turns = 0.5 if values["gravity_torque"] != 0.0 else math.inf
     if residual is not None and np.size(residual["angle"]) > 1:
-        features.append(float(np.min(np.diff(residual["angle"]))))
-    return min(features)
+        return min(turns, float(np.min(np.diff(residual["angle"]))))
+    return turns
 
 
 def _pack_residual(record: np.ndarray, residual: Mapping[str, Any] | None) -> None:

@@ -12,12 +12,15 @@ from typing import NamedTuple
 from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.gear import shaft
-from pierburg_ros.plant.motion.body import PARTED, Line, after, balance, error, piece, share, torque_at, turn
+from pierburg_ros.plant.gear.teeth import felt, given_way, holding, push, shaft_velocity
+from pierburg_ros.plant.motion.body import PARTED, UNMOVED, Line, after, balance, error, piece, share, torque_at, turn
 from pierburg_ros.plant.motion.events import (
     CORRECTED,
     EVEN,
+    SAME_MOMENT,
     beyond,
     finest,
+    least,
     lower,
     motor_onset,
     next_step,
@@ -29,10 +32,14 @@ from pierburg_ros.plant.motion.watch import due, put
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.friction import level
 
-FLOOR = 1e-4
-"""Shortest time constant of the twist, as a share of the actuator's own time; stands in for a damping of 0.
-
-Standing or sliding: teeth that damp a sliding shaft alone would send it back at once where they set it moving."""
+UNTOUCHED = 1e-3
+"""Share of the time in which teeth and back-EMF stop the motor within which it counts as no faster."""
+TINY = 1e-300
+"""Damping [N.m.s/rad] in place of none."""
+CLOSE = 1e-6
+"""Share of a travel within which its end is found where no straight line holds."""
+DOUBLINGS = 60
+"""Steps of the search for such an end outwards."""
 
 
 class Sides(NamedTuple):
@@ -53,93 +60,13 @@ class Sides(NamedTuple):
     motor_bristle: float
 
 
-class Grip(NamedTuple):
-    """What holds the shaft: the teeth's deflection [rad], their stiffness and damping, and the shaft's own resistance.
-
-    N.m/rad and N.m.s/rad, 0 where the teeth do not touch; N.m at rest, N.m/rad, N.m.s/rad; with its friction level
-    [N.m]. `mobility` is its velocity for each N.m more [rad/(N.m.s)].
-    """
-
-    deflection: float
-    stiffness: float
-    damping: float
-    resisting: float
-    bending: float
-    viscous: float
-    friction: float
-    mobility: float
-
-
-@kernel
-def _deflection(p, twist):
-    """Deflection of the teeth [rad] at `twist` [rad] between motor and shaft, 0 within the play."""
-    if twist > 0.0:
-        return twist
-    return min(twist + p.backlash.gap, 0.0)
-
-
-@kernel
-def _grip(p, s, twist, rate, angle, velocity, bristle, time, motor):
-    """What holds the shaft at `twist` [rad] growing with `rate` [rad/s]; across a play the teeth do not pull."""
-    gear = p.gear_compliance
-    deflection = _deflection(p, twist)
-    resisting = bending = viscous = friction = 0.0
-    if s.direction != 0.0:
-        resisting, bending, viscous, friction = shaft.resistance(p, s, angle, velocity, bristle, time, motor)
-    pushes = deflection * (gear.stiffness * deflection + gear.damping * rate) > 0.0
-    if p.backlash.gap > 0.0 and not pushes:
-        viscous = max(viscous, shaft.least_damping(p))
-        return Grip(deflection, 0.0, 0.0, resisting, bending, viscous, friction, 1.0 / viscous)
-    damping = max(gear.damping, FLOOR * p.own.time * gear.stiffness)
-    return Grip(deflection, gear.stiffness, damping, resisting, bending, viscous, friction, 1.0 / (damping + viscous))
-
-
-@kernel
-def _given_way(grip, more):
-    """The grip after the shaft has gone a little `more` [rad]."""
-    deflection, resisting = grip.deflection - more, grip.resisting + grip.bending * more
-    return Grip(
-        deflection,
-        grip.stiffness,
-        grip.damping,
-        resisting,
-        grip.bending,
-        grip.viscous,
-        grip.friction,
-        grip.mobility,
-    )
-
-
-@kernel
-def _velocity(s, grip, motor_velocity):
-    """Velocity of the shaft [rad/s]: where it slides its torques balance at once."""
-    if s.direction == 0.0:
-        return 0.0
-    return grip.mobility * (grip.stiffness * grip.deflection + grip.damping * motor_velocity - grip.resisting)
-
-
-@kernel
-def _teeth(grip, motor_velocity, velocity):
-    """Torque from motor to shaft [N.m]."""
-    return grip.stiffness * grip.deflection + grip.damping * (motor_velocity - velocity)
-
-
-@kernel
-def _felt(s, grip):
-    """Stiffness [N.m/rad] and damping [N.m.s/rad] that the motor feels, the shaft giving way."""
-    if s.direction == 0.0 or grip.stiffness == 0.0:
-        return grip.stiffness, grip.damping
-    stiffness = grip.stiffness * grip.bending / (grip.stiffness + grip.bending)
-    return stiffness, grip.damping * grip.viscous * grip.mobility
-
-
 @kernel
 def _follow(s, grip, step, motor_velocity, rate, faded):
     """Travel of the shaft [rad] and its velocity [rad/s] after `step` [s] of the motor turning evenly.
 
     It follows at `rate` [1/s], by which its start has `faded`.
     """
-    start = _velocity(s, grip, motor_velocity)
+    start = shaft_velocity(s, grip, motor_velocity)
     if s.direction == 0.0 or abs(rate) * step < 1e-9:
         return start * step, start
     even = grip.stiffness * motor_velocity / (grip.stiffness + grip.bending)
@@ -188,7 +115,7 @@ def _motor_bristle(p, s, travel):
         return s.presliding.motor_bristle
     motor = torque_at(p, s, s.motor_velocity, s.current)
     friction = level(p, s.motor_direction, s.motor_velocity, s.motor_angle, motor)[0]
-    return presliding.moved(p.presliding, s.presliding.motor_bristle, friction, travel)
+    return presliding.moved(p.presliding, s.presliding.motor_bristle, friction, friction, travel)
 
 
 @kernel
@@ -196,11 +123,10 @@ def _line(p, s):
     """The grip on the shaft now, and the net torque on the motor as a straight line, shaft following."""
     twist = s.motor_angle - s.angle
     motor = torque_at(p, s, s.motor_velocity, s.current)
-    rate, bristle = s.motor_velocity - s.velocity, s.presliding.bristle
-    grip = _grip(p, s, twist, rate, s.angle, s.velocity, bristle, s.time, motor)
+    grip = holding(p, s, twist, s.motor_velocity, s.angle, s.velocity, s.presliding.bristle, s.time, motor)
     free = _motor(p, s, s.motor_angle, s.motor_velocity, s.time, s.current, s.presliding.motor_bristle)
-    stiffness, damping = _felt(s, grip)
-    force = free.force - _teeth(grip, s.motor_velocity, _velocity(s, grip, s.motor_velocity))
+    stiffness, damping = felt(s, grip)
+    force = free.force - push(grip, s.motor_velocity, shaft_velocity(s, grip, s.motor_velocity))
     return grip, Line(force, free.slope + damping, free.stiffness + stiffness, free.rate, free.gain)
 
 
@@ -224,19 +150,20 @@ def _trial(p, s, grip, line, step):
         faded = math.expm1(-rate * step)
     moved, velocity = _follow(s, grip, step, travel / step, rate, faded)
     time = s.time + step
-    bristle = shaft.bristle_after(p, s, grip.friction, moved) if s.direction != 0.0 else s.presliding.bristle
     twist = s.motor_angle + travel - s.angle - moved
     motor = torque_at(p, s, ended, amperes)
-    reached = _grip(p, s, twist, ended - velocity, s.angle + moved, velocity, bristle, time, motor)
-    missed = 0.0
+    bristle = shaft.bristle_after(p, s, grip.friction, moved, velocity, motor)
+    reached = holding(p, s, twist, ended, s.angle + moved, velocity, bristle, time, motor)
+    missed, turned = 0.0, False
     if s.direction != 0.0:
         missed = _missed(grip, reached, moved, velocity)
         more = -missed * grip.mobility * step * grown(rate * step, faded)
+        turned = moved * (moved + more) < 0.0
         moved += more
         bristle = shaft.leaned(p, s, reached.friction, bristle, more)
-        reached = _given_way(reached, more)
-    velocity = _velocity(s, reached, ended)
-    teeth = _teeth(reached, ended, velocity)
+        reached = given_way(reached, more)
+    velocity = shaft_velocity(s, reached, ended)
+    teeth = push(reached, ended, velocity)
     motor_bristle = _motor_bristle(p, s, travel)
     wrong = 0.0
     if not _motor_stands(p, s):
@@ -244,8 +171,53 @@ def _trial(p, s, grip, line, step):
         expected = after(p, line, step, travel, ended - s.motor_velocity, amperes - s.current)
         wrong = error(p, s, line, step, actual - expected)
     if s.direction != 0.0:
-        wrong += _astray(grip, rate, step, missed) / CORRECTED
+        wrong += math.inf if turned else _astray(grip, rate, step, missed) / CORRECTED
     return Sides(travel, ended, amperes, moved, velocity, teeth, missed, wrong, bristle, motor_bristle)
+
+
+@kernel
+def _enough(p, s, grip, line):
+    """Length [s] below which a step is not shortened: where either side runs away, not beyond growth by e."""
+    rate = (grip.stiffness + grip.bending) * grip.mobility
+    enough = least(p, line)
+    return min(enough, -1.0 / rate) if s.direction != 0.0 and rate < 0.0 else enough
+
+
+@kernel
+def _bent(p, s, grip, sides, step):
+    """The same where no straight line holds in the shortest step: the shaft by Euler's implicit rule, however stiff.
+
+    The travel is that at whose end the torques balance at the velocity which leads there.
+    """
+    _, start = _arrived(p, s, grip, sides, step, 0.0, s.velocity)
+    early, late = 0.0, step * start
+    for _ in range(DOUBLINGS):
+        _, velocity = _arrived(p, s, grip, sides, step, late, start)
+        if (step * velocity - late) * late <= 0.0:
+            break
+        early, late = late, 2.0 * late
+    while abs(late - early) > max(UNMOVED * p.own.angle, CLOSE * abs(late)):
+        middle = 0.5 * (early + late)
+        _, velocity = _arrived(p, s, grip, sides, step, middle, start)
+        if (step * velocity - middle) * late > 0.0:
+            early = middle
+        else:
+            late = middle
+    reached, velocity = _arrived(p, s, grip, sides, step, late, start)
+    teeth, motor = push(reached, sides.motor_velocity, velocity), torque_at(p, s, sides.motor_velocity, sides.current)
+    bristle = shaft.bristle_after(p, s, grip.friction, late, velocity, motor)
+    ended = sides.motor_travel, sides.motor_velocity, sides.current
+    return Sides(*ended, late, velocity, teeth, 0.0, sides.wrong, bristle, sides.motor_bristle)
+
+
+@kernel
+def _arrived(p, s, grip, sides, step, moved, velocity):
+    """The grip on a shaft that has `moved` [rad] in a step, last at this `velocity` [rad/s], and its velocity then."""
+    motor = torque_at(p, s, sides.motor_velocity, sides.current)
+    bristle = shaft.bristle_after(p, s, grip.friction, moved, velocity, motor)
+    twist, angle, time = s.motor_angle + sides.motor_travel - s.angle - moved, s.angle + moved, s.time + step
+    reached = holding(p, s, twist, sides.motor_velocity, angle, velocity, bristle, time, motor)
+    return reached, shaft_velocity(s, reached, sides.motor_velocity)
 
 
 @kernel
@@ -281,26 +253,33 @@ def move(p, s, remaining):
     """Move for at most `remaining` [s], up to the next event; gives the time used."""
     _set_directions(p, s)
     grip, line = _line(p, s)
-    step = min(remaining, max(s.step, shortest(p)), turn(p, s, s.motor_velocity, line))
+    enough = _enough(p, s, grip, line)
+    step = min(remaining, max(s.step, enough), turn(p, s, s.motor_velocity, line))
     if p.external_load.frequency > 0.0:
-        step = max(min(step, EVEN / p.external_load.frequency), shortest(p))
+        step = max(min(step, EVEN / p.external_load.frequency), enough)
     while True:
         sides = _trial(p, s, grip, line, step)
         excess = max(
             beyond(p, sides.wrong, sides.motor_travel),
-            abs(sides.motor_travel) / finest(p, s.motor_angle),
-            abs(sides.travel) / finest(p, s.angle),
+            abs(sides.motor_travel) / finest(p, s.motor_angle, s.motor_velocity),
+            abs(sides.travel) / finest(p, s.angle, s.motor_velocity),
         )
-        if not excess > 1.0 or step <= shortest(p):
+        if not excess > 1.0 or step <= enough:
             break
-        step = max(shorter(step, excess), shortest(p))
+        step = max(shorter(step, excess), enough)
     s.step = next_step(s.step, step, remaining, excess)
-    breaks = step > shortest(p) and _breaks(p, s, sides, step)
-    if breaks:
+    bends = excess > 1.0 and s.direction != 0.0
+    if bends:
+        sides = _bent(p, s, grip, sides, step)
+    breaks = _breaks(p, s, sides, step)
+    if breaks and not bends:
         step = _breaking_time(p, s, grip, line, step)
         sides = _trial(p, s, grip, line, step)
     while due(p, s, s.time + step):
-        angle, velocity = _between(p, s, grip, line, s.ahead.time[s.sampled] - s.time, step, sides.missed)
+        elapsed = s.ahead.time[s.sampled] - s.time
+        angle, velocity = s.angle + sides.travel * elapsed / step, sides.velocity
+        if not bends:
+            angle, velocity = _between(p, s, grip, line, elapsed, step, sides.missed)
         put(p, s, angle, velocity)
     _take(p, s, sides, step, breaks)
     return step
@@ -313,18 +292,20 @@ def _set_directions(p, s):
         return
     twist = s.motor_angle - s.angle
     motor = torque_at(p, s, s.motor_velocity, s.current)
-    rate, bristle = s.motor_velocity - s.velocity, s.presliding.bristle
-    grip = _grip(p, s, twist, rate, s.angle, 0.0, bristle, s.time, motor)
+    grip = holding(p, s, twist, s.motor_velocity, s.angle, s.velocity, s.presliding.bristle, s.time, motor)
     if s.direction == 0.0:
-        s.direction = shaft.onset(p, s, _teeth(grip, s.motor_velocity, 0.0), s.angle, s.time)
+        s.direction = shaft.onset(p, s, push(grip, s.motor_velocity, 0.0), s.angle, s.time)
     if _motor_stands(p, s):
-        s.motor_direction = motor_onset(p, s, _teeth(grip, 0.0, s.velocity), s.current)
+        s.motor_direction = motor_onset(p, s, push(grip, 0.0, s.velocity), s.current)
 
 
 @kernel
 def _breaking_time(p, s, grip, line, step):
+    """When within a `step` [s] a side breaks loose or rests: so well that the motor is no faster for it."""
     early, late = 0.0, step
-    while late - early > shortest(p):
+    settling = p.total_inertia / max(line.slope + grip.damping, TINY)
+    found = max(min(shortest(p), UNTOUCHED * settling), SAME_MOMENT * p.own.time)
+    while late - early > found:
         middle = 0.5 * (early + late)
         if _breaks(p, s, _trial(p, s, grip, line, middle), middle):
             late = middle

@@ -47,7 +47,7 @@ def move(p, s, remaining):
             return hold(p, s, _staying(p, s, remaining))
     pull, friction = _pull(p, s, s.angle, s.velocity, s.current, s.presliding.bristle, s.time)
     if pull * s.flank < 0.0:
-        _part(s, s.direction)
+        _part(s, s.direction if s.velocity != 0.0 else 0.0)
         return 0.0
     line = joined(p, s)
     return slide_joined(p, s, line, _tearing_time(p, s, line, friction, remaining))
@@ -111,7 +111,7 @@ def _tearing_time(p, s, line, friction, remaining):
 @kernel
 def _tears(p, s, line, friction, step):
     travel, velocity, amperes = piece(p, s, step, s.velocity, line)
-    bristle = shaft.bristle_after(p, s, friction, travel)
+    bristle = shaft.bristle_after(p, s, friction, travel, velocity, torque_at(p, s, velocity, amperes))
     return _pull(p, s, s.angle + travel, velocity, amperes, bristle, s.time + step)[0] * s.flank < 0.0
 
 

@@ -11,8 +11,8 @@ from pierburg_ros.plant.motion.linear_piece import alike, responses, turning_tim
 from pierburg_ros.plant.motion.third_order import third_responses
 from pierburg_ros.plant.motion.watch import due, put, slid
 from pierburg_ros.plant.torques.drive import motor_torque
-from pierburg_ros.plant.torques.friction import damping, level
-from pierburg_ros.plant.torques.load import load, outside, ripple, ripple_slope
+from pierburg_ros.plant.torques.friction import damping, leans, level
+from pierburg_ros.plant.torques.load import blurred, load, outside, ripple, ripple_slope
 
 JOINED = 0
 """Motor and shaft move as one."""
@@ -77,11 +77,11 @@ def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
     pulled = stiffness = by_load_velocity = rate = 0.0
     if kind == JOINED:
         pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, outside(p, s, time))
-    if p.cogging_torque.amplitude != 0.0:
+    if p.cogging_torque.amplitude != 0.0 and not blurred(p, velocity):
         lead = s.motor_angle - s.angle if kind == JOINED else 0.0
         pulled += ripple(p, angle + lead)
         stiffness += ripple_slope(p, angle + lead)
-    if p.presliding.stiffness != 0.0:
+    if leans(p, friction):
         held, viscous_too, by_path, by_level = presliding.bearing(p.presliding, bristle, friction, direction, velocity)
         force = motor - pulled - part * held - (part * viscous_too + viscous) * velocity
         viscous += part * (viscous_too + by_level * by_velocity)

@@ -27,7 +27,7 @@ from pierburg_ros.plant.motion.body import (
 from pierburg_ros.plant.motion.watch import due
 from pierburg_ros.plant.torques import friction
 from pierburg_ros.plant.torques.drive import relaxed_current
-from pierburg_ros.plant.torques.load import load, outside, ripple
+from pierburg_ros.plant.torques.load import blurred, load, outside, ripple
 
 TOLERANCE = 2e-7
 """Error that an internal step may make, as a share of the actuator's travel, plus `SHARE` of its own; of the valve's
@@ -59,9 +59,17 @@ def shortest(p):
 
 
 @kernel
-def _least(p, slope):
-    """Length [s] below which a sliding step is not shortened: where friction falls, not beyond growth by e."""
-    return shortest(p) if slope >= 0.0 else min(shortest(p), -p.total_inertia / slope)
+def least(p, line):
+    """Length [s] below which a sliding step is not shortened: where the motion runs away, not beyond growth by e."""
+    if line.slope >= 0.0 and line.stiffness >= 0.0:
+        return shortest(p)
+    half, stiffness = 0.5 * line.slope * p.agility, line.stiffness * p.agility
+    square = half * half - stiffness
+    if square <= 0.0:
+        return min(shortest(p), -1.0 / half)
+    root = math.sqrt(square)
+    growth = root - half if half <= 0.0 else -stiffness / (root + half)
+    return min(shortest(p), 1.0 / growth)
 
 
 @kernel
@@ -180,7 +188,7 @@ def slide(p, s, kind, angle, velocity, direction, low, high, line, remaining):
     balance of torques now. What it is seen to miss at the end is added, and the step judged by what that leaves.
     """
     step, bend = min(_first_step(p, s, line.slope, remaining), turn(p, s, velocity, line)), 0.0
-    furthest, least = finest(p, angle), _least(p, line.slope)
+    furthest, enough = finest(p, angle, velocity), least(p, line)
     while True:
         travel, ended, amperes = piece(p, s, step, velocity, line)
         while ended == 0.0 and travel != 0.0 and step > shortest(p):  # died away: whether it turned round is not seen
@@ -198,20 +206,21 @@ def slide(p, s, kind, angle, velocity, direction, low, high, line, remaining):
             travel, ended, amperes = piece(p, s, step, velocity, line)
         if p.plain:
             break
-        if abs(travel) > furthest and step > least:
-            step = max(0.9 * step * furthest / abs(travel), least)
+        if abs(travel) > furthest and step > enough:
+            step = max(0.9 * step * furthest / abs(travel), enough)
             continue
         missed = _missed(p, s, kind, angle, velocity, direction, step, travel, ended, amperes, line)
         excess = beyond(p, error(p, s, line, step, missed), travel)
-        if s.piece.order == 2 and not rests and not stops:
+        grows = -line.slope * p.agility * step > 1.0
+        if s.piece.order == 2 and not rests and not stops and not grows:
             curved = curvature(p, step, missed)
             more, faster = curved * s.piece.thrice, curved * s.piece.twice
             if (ended + faster) * direction > 0.0 and (angle + travel + more - limit) * direction < 0.0:
                 travel, ended, excess, bend = travel + more, ended + faster, excess / CORRECTED, curved
-        if not excess > 1.0 or step <= least:
+        if not excess > 1.0 or step <= enough:
             s.step = next_step(s.step, step, remaining, excess)
             break
-        step, bend = max(shorter(step, excess), least), 0.0
+        step, bend = max(shorter(step, excess), enough), 0.0
     _remember(p, s, kind, direction, angle, velocity, travel, ended, amperes)
     if kind == JOINED and due(p, s, s.time + step):
         seen(p, s, angle, velocity, line, bend, step)
@@ -250,9 +259,10 @@ def _first_step(p, s, slope, remaining):
 
 
 @kernel
-def finest(p, angle):
-    """Travel [rad] from `angle` within which no torque turns more than once."""
-    return min(p.finest, position_dependent_friction.bends_within(p.position_dependent_friction, angle))
+def finest(p, angle, velocity):
+    """Travel [rad] from `angle` at `velocity` [rad/s] within which no torque turns more than once."""
+    turns = min(p.finest, position_dependent_friction.bends_within(p.position_dependent_friction, angle))
+    return turns if blurred(p, velocity) else min(turns, p.ripple)
 
 
 @kernel
@@ -300,7 +310,7 @@ def _missed(p, s, kind, angle, velocity, direction, step, travel, ended, amperes
 def _bristle(p, s, bristle, direction, angle, velocity, travel, ended, amperes):
     before = friction.level(p, direction, velocity, angle, torque_at(p, s, velocity, s.current))[0]
     after = friction.level(p, direction, ended, angle + travel, torque_at(p, s, ended, amperes))[0]
-    return presliding.moved(p.presliding, bristle, 0.5 * (before + after), travel)
+    return presliding.moved(p.presliding, bristle, before, after, travel)
 
 
 @kernel

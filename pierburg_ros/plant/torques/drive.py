@@ -67,14 +67,16 @@ def relaxed_current(p, s, duration):
 def warm(p, s, travel, change, duration):
     """Heat the winding for `duration` [s] with the mean current, from the motor's `travel` [rad] and `change` [A].
 
-    Equation (5) of the paper, averaged: voltage = R i + inductance di/dt + k_g k_m w.
+    Equation (5) of the paper, averaged: voltage = R i + inductance di/dt + k_g k_m w. A winding draws
+    less from a voltage as it warms, within the step too: one that holds no heat would warm and cool in turns else.
     """
-    if not s.closed_bridge:
-        amperes = 0.0
-    else:
+    rise, power, falling = s.thermal_resistance.rise, 0.0, 0.0
+    if s.closed_bridge:
+        hot = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, rise)
+        source = supply_sag.resistance(p.supply_sag, pwm_deadband.effective(p.pwm_deadband, s.command))
         induced = p.gear_ratio * p.torque_constant * travel + p.armature_inductance.inductance * change
-        amperes = (s.voltage - induced / duration) / s.resistance
-    hot = thermal_resistance.resistance(p.thermal_resistance, p.armature_resistance, s.thermal_resistance.rise)
-    s.thermal_resistance.rise = thermal_resistance.heated(
-        p.thermal_resistance, s.thermal_resistance.rise, amperes * amperes * hot, duration
-    )
+        amperes = (s.voltage - induced / duration) / (hot + source)
+        power = amperes * amperes * hot
+        warming = thermal_resistance.COPPER * p.armature_resistance
+        falling = max(amperes * amperes * warming * (hot - source) / (hot + source), 0.0)
+    s.thermal_resistance.rise = thermal_resistance.heated(p.thermal_resistance, rise, power, falling, duration)

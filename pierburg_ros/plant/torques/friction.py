@@ -17,6 +17,9 @@ from pierburg_ros.kernel import kernel
 
 NOTHING = 4e-10
 """Share of the stall torque that is no push: bristles have come to rest when nothing more than this drives them."""
+LEAST_LEAN = 1e-8
+"""Share of the travel below which a sliding bristle has no lean of its own: a twentieth of the error that a step may
+make. It would change its lean within any step, and be no number where the friction fades away."""
 
 
 @kernel
@@ -50,14 +53,24 @@ def level(p, direction, velocity, angle, motor_torque):
 
 
 @kernel
+def leans(p, level):
+    """Whether a contact of this friction `level` [N.m], or of that the other way, gives before it slides."""
+    if p.presliding.stiffness == 0.0:
+        return False
+    either = level + abs(p.direction_dependent_friction.coulomb_difference)
+    return either > LEAST_LEAN * p.own.angle * p.presliding.stiffness
+
+
+@kernel
 def standing(p, share, net, angle, motor_torque, bristle):
     """What `net` torque pushes a standing contact with that carries this `share` of it, and what it holds [N.m].
 
     Bristles hold by leaning, so what they bear is part of the balance, and any push beyond it moves them.
     """
-    if p.presliding.stiffness != 0.0:
+    held = level(p, 1.0 if net > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
+    if leans(p, held):
         return net - share * p.presliding.stiffness * bristle, NOTHING * p.own.torque
-    return net, share * level(p, 1.0 if net > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
+    return net, share * held
 
 
 @kernel

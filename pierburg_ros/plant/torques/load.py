@@ -9,6 +9,13 @@ import numpy as np
 from pierburg_ros.effects import cogging_torque, external_load, nonlinear_spring, stop_compliance
 from pierburg_ros.kernel import kernel
 
+BLURRED = 2e5
+"""Thirds of a ripple's period that pass in the actuator's own time above which it may be left out: two million a
+second for the valve, which at full speed passes some hundred of a ripple that its motor may have."""
+UNSHAKEN = 1e-2
+"""Share of its velocity by which a motor may be shaken that passes a ripple as if it were none. Its mean velocity is
+then wrong by half of that where the ripple begins to be left out."""
+
 
 @kernel
 def ripple(p, motor_angle):
@@ -16,6 +23,19 @@ def ripple(p, motor_angle):
     if p.cogging_torque.amplitude == 0.0:
         return 0.0
     return cogging_torque.torque(p.cogging_torque, p.gear_ratio, motor_angle)
+
+
+@kernel
+def blurred(p, velocity):
+    """Whether a motor at this `velocity` [rad/s] passes its ripple so fast that only its mean, nothing, acts.
+
+    No sensor sees it then, and it changes the velocity by a small share at most: amplitude / (wavenumber J w^2), of
+    the energy of a ripple, amplitude / wavenumber, and the motor's own.
+    """
+    if abs(velocity) * p.own.time <= BLURRED * p.ripple:
+        return False
+    wavenumber = p.cogging_torque.periods_per_motor_revolution * p.gear_ratio
+    return p.cogging_torque.amplitude < UNSHAKEN * wavenumber * p.total_inertia * velocity * velocity
 
 
 @kernel
