@@ -26,7 +26,7 @@ from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.data import Data, data_of, in_parts
+from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
 from pierburg_ros.estimation.turn import has_overtones
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -103,9 +103,22 @@ def examined(
         tell = staged(progress, "disturbances")
         found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
         if verdict_on(found.chosen) != "unexplained":
-            return found, None
+            return found, None if unseen_confirm(found) else unexamined(found)
     tell = staged(progress, "what remains")
     return found, deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
+
+
+def unseen_confirm(found: Found) -> bool:
+    """Whether effects beside a disturbance lower the error on samples that neither fit nor choice has used.
+
+    What an unlogged quantity has done is estimated where the samples train, so that there little is left to miss.
+    """
+    if not (found.data.disturbed and found.chosen.explanation.variants):
+        return True
+    before, after = (
+        rms(found.data.residual(fit.model, fit.switch)[found.data.test]) for fit in (found.recalibrated, found.final)
+    )
+    return after < before
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:
