@@ -71,6 +71,7 @@ def made(make: Callable[[], LiveNode]) -> LiveNode | None:
         if not told:
             raise
     finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, signal.SIG_IGN)
     return None if told else node
 
