@@ -13,7 +13,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.least_squares import BRIEF, Solution
 from pierburg_ros.estimation.likelihood import SURE, TIED
 from pierburg_ros.estimation.slopes import FINE, sharp
 
@@ -23,6 +23,8 @@ three brief descents; an interval that wide is not identifiable anyway."""
 PATIENCE = 3
 """How many reaches without success end the search where events jump. Work: a descent may have ended in a local
 minimum, so one failure is no end; each costs up to three brief descents."""
+HALF_WAY = 1.5
+"""Reach, in that of the last success, half way to the next one. Derived: reaches double."""
 HALF_KNOWN = 0.5
 """A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: a value
 known to no better than a half is none to act on; a convention of the report."""
@@ -74,8 +76,7 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
         for place, unknown in enumerate(known.undetermined)
         for side in (-1.0, 1.0)
     ]
-    patience = PATIENCE if jumps else 1
-    ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, patience), sides)
+    ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, jumps), sides)
     allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
     result = {}
     for name in names:
@@ -103,12 +104,13 @@ def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: flo
     return reach
 
 
-def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, patience: int) -> list[Signal]:
+def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, jumps: bool) -> list[Signal]:
     """Points that an interval must hold: `reach` away along one of the coordinates, then in the valley.
 
     Further out the other quantities are fitted again, as long as chi2 keeps the `limit`. Three starts are tried: where
-    the valley leads, where it was last, and the best values. `patience` is the number of reaches without success that
-    end the search.
+    the valley leads, where it was last, and the best values. Where events jump, `PATIENCE` reaches without success end
+    the search, and half way from the last success to the next reach is tried as well: an end found by doubling may lie
+    at half of what is allowed.
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = coordinates.bounds
@@ -120,19 +122,27 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
         point[place] = np.clip(best[place] + distance, lower[place], upper[place])
         return np.asarray(point)
 
-    nowhere = np.zeros(best.size)
-    points, valley = [moved(reach, nowhere)], nowhere
-    for _ in range(DOUBLINGS):
-        starts = (moved(reach, 2.0 * valley), moved(reach, valley), moved(reach, nowhere))
+    def fitted(distance: float, valley: Signal, further: float) -> Solution:
+        """The best fit at so great a distance, from the valley that leads there by a factor `further`."""
+        starts = (moved(distance, further * valley), moved(distance, valley), moved(distance, nowhere))
         tried = {tuple(start): start for start in starts}.values()
-        fits = [estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried]
-        there = min(fits, key=lambda solution: solution.cost)
+        fits = (estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried)
+        return min(fits, key=lambda solution: solution.cost)
+
+    nowhere = np.zeros(best.size)
+    points, valley, reached = [moved(reach, nowhere)], nowhere, 0.0
+    patience = PATIENCE if jumps else 1
+    for _ in range(DOUBLINGS):
+        there = fitted(reach, valley, 2.0)
         if there.cost <= limit:
             points.append(there.point)
-            valley = there.point - best
+            valley, reached = there.point - best, reach
         else:
             patience -= 1
         if patience == 0 or not lower[place] < there.point[place] < upper[place]:
             break
         reach *= 2.0
+    if jumps and reached != 0.0 and patience == 0:
+        there = fitted(HALF_WAY * reached, valley, HALF_WAY)
+        points += [there.point] if there.cost <= limit else []
     return points
