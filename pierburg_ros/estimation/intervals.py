@@ -24,7 +24,7 @@ PATIENCE = 3
 """How many reaches without success end the search where events jump. Work: a descent may have ended in a local
 minimum, so one failure is no end; each costs up to three brief descents."""
 HALF_WAY = 1.5
-"""Reach, in that of the last success, half way to the next one. Derived: the mean of one and two, since reaches double."""
+"""Reach, in that of the last success, half way to the next one. Derived: the mean of 1 and 2, as reaches double."""
 HALF_KNOWN = 0.5
 """A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: a value
 known to no better than a half is none to act on; a convention of the report."""
