@@ -16,6 +16,7 @@ from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.estimation.least_squares import FULL, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
 from pierburg_ros.estimation.prior import improbability
+from pierburg_ros.estimation.rests import cut_at_rests
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
@@ -90,6 +91,11 @@ class Estimator:
         self._train = data.train
         self._validation = data.validation
         self._filter = Kalman(data, self._train).filtered(discrepancy) if discrepancy else None
+
+    @cached_property
+    def between_rests(self) -> Estimator:
+        """The same for recordings cut where the shaft rests: costs are smoother, values only nearly right."""
+        return Estimator(cut_at_rests(self.data), self.nominal, self.over, self.discrepancy, self.unit)
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Training residual of `model` in units of the noise, or its innovations; large where there is none."""

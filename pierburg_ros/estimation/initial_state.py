@@ -62,7 +62,8 @@ class InitialState:
     def of(time: Signal, measured: Signal) -> InitialState:
         """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once."""
         noise = noise_of(time, measured)
-        length, even = _stays(measured[:LONGEST], noise), bool(_even(measured[:EVEN], BRISK * noise, noise).any())
+        length = _stays(measured[:LONGEST], noise)
+        even = bool(_even(_windows(measured[:EVEN]), BRISK * noise, noise).any())
         while length >= 2 * FEWEST and _bent(measured[:length], noise, _rounding(measured)):
             length //= 2
         known = even or length >= FEWEST
@@ -130,7 +131,7 @@ def from_standstill(recording: Recording, nominal: Model) -> Recording:
 
 def first_standstill(measured: Signal, noise: float) -> int | None:
     """The first sample of `measured` from which the shaft stands still or creeps; None where there is none."""
-    still = _even(measured, SLOW * noise, noise)
+    still = _even(_windows(measured), SLOW * noise, noise)
     lasting = still[: -EVEN // 2] & still[EVEN // 2 :]
     return int(np.argmax(lasting)) + EVEN // 2 if lasting.any() else None
 
@@ -143,9 +144,31 @@ def first_rest(measured: Signal, noise: float) -> int | None:
     sample = first_standstill(measured, noise)
     if sample is None:
         return None
-    means = np.array([np.mean(measured[at : at + EVEN]) for at in range(sample, measured.size - EVEN + 1, EVEN)])
-    rests = np.abs(np.diff(means)) <= 2.0 * noise * np.sqrt(2.0 / EVEN) + _rounding(measured)
+    rests = _keeps_place(measured[sample:], 2.0 * noise)
     return sample + EVEN * int(np.argmax(rests)) if rests.any() else None
+
+
+def rests_of(measured: Signal, noise: float) -> list[slice]:
+    """The middle half of each rest: of stretches of `EVEN` samples whose means differ by their noise alone.
+
+    How well the mean of a rest is known decides what a part that begins there is worth: with two stretches of each in
+    the place of its middle half 2 of 12 searches from afar missed the minimum, with that none.
+    """
+    blocks = measured[: measured.size // EVEN * EVEN].reshape(-1, EVEN)
+    even = _even(blocks, SLOW * noise, noise)
+    rests = _keeps_place(measured, CERTAIN * noise) & even[:-1] & even[1:]
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], rests, [False]])))
+    found = []
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        start, stop = EVEN * first, EVEN * (last + 1)
+        found.append(slice(start + (stop - start) // 4, stop - (stop - start) // 4))
+    return found
+
+
+def _keeps_place(measured: Signal, deviation: float) -> NDArray[np.bool_]:
+    """Whether each stretch of `EVEN` samples has the mean of the next, but for samples off by a `deviation`."""
+    means = measured[: measured.size // EVEN * EVEN].reshape(-1, EVEN).mean(axis=1)
+    return np.asarray(np.abs(np.diff(means)) <= deviation * np.sqrt(2.0 / EVEN) + _rounding(measured))
 
 
 def _rounding(measured: Signal) -> float:
@@ -179,10 +202,14 @@ def _bent(windows: Signal, noise: float, rounding: float) -> NDArray[np.bool_]:
     return np.asarray(np.abs(first + last - 2.0 * middle) > CERTAIN * noise * np.sqrt(6.0 / third) + rounding)
 
 
-def _even(measured: Signal, span: float, noise: float) -> NDArray[np.bool_]:
-    """Whether `EVEN` samples from each one lie on a line and within a `span`."""
+def _even(windows: Signal, span: float, noise: float) -> NDArray[np.bool_]:
+    """Whether successive samples, along the last axis, lie on a line and within a `span`."""
+    rounding = _rounding(windows)
+    return np.asarray((np.ptp(windows, axis=-1) <= span + rounding) & ~_bent(windows, noise, rounding))
+
+
+def _windows(measured: Signal) -> Signal:
+    """`EVEN` samples from each one; shape (windows, EVEN), none where there are too few samples."""
     if measured.size < EVEN:
-        return np.zeros(1, dtype=bool)
-    windows = np.lib.stride_tricks.sliding_window_view(measured, EVEN)
-    rounding = _rounding(measured)
-    return np.asarray((np.ptp(windows, axis=1) <= span + rounding) & ~_bent(windows, noise, rounding))
+        return np.zeros((0, EVEN))
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(measured, EVEN))

@@ -9,6 +9,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.likelihood import EXPLAINED
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
 """How far to look along each axis of the cost, in standard deviations of the fit. Measured: together with `LEAPS` and
@@ -29,6 +30,9 @@ COARSEST = 10.0
 times the usual one was tried on a trial of static friction (n = 1) and left it unexplained."""
 ROUNDS = 6
 """How often a better point is descended from. Work: it ends sooner after two rounds without a gain; not varied."""
+AGAIN = 0.5
+"""Share of the cost below which it starts between rests once more, where something is left. Chosen: a fall by half says
+that it began in another valley; not varied."""
 WIDEST = 0.25
 """Share of a parameter's range beyond which nothing is looked for. Chosen: an axis along which the data say nothing
 would lead out of all bounds; not varied."""
@@ -37,10 +41,31 @@ would lead out of all bounds; not varied."""
 def refined(estimator: Estimator, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
 
-    One descent starts at the lowest of many points. Others start half the longest reach along the weakest axis, and in
-    the first round where leaps along logarithmic parameters land: the valley of the cost bends, so that no point on a
-    straight line shows how low it runs there. Rounds take fine and coarse differences for the Jacobian in turn. It ends
-    when neither helps.
+    Where the shaft rests, first between its rests: far away only these costs are smooth enough to look for minima.
+    """
+    if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
+        return replace(_descended(estimator, fit, leaping=True), refined=True)
+    lower = _descended_by_rests(estimator, fit)
+    while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
+        fit, lower = lower, _descended_by_rests(estimator, lower)
+    return replace(lower, refined=True)
+
+
+def _descended_by_rests(estimator: Estimator, fit: Fit) -> Fit:
+    """`fit`, or a lower one, descended to between rests first and then along whole recordings."""
+    rests = estimator.between_rests
+    smooth = _descended(rests, rests.fit(fit.explanation, fit.values), leaping=True)
+    nearest = min(fit, estimator.fit(fit.explanation, smooth.values), key=lambda each: each.chi2)
+    return _descended(estimator, nearest, leaping=False)
+
+
+def _descended(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
+    """`fit`, or the lowest that rounds of descents have led to.
+
+    One descent starts at the lowest of many points. Others start half the longest reach along the weakest axis, and, if
+    it is `leaping`, in the first round where leaps along logarithmic parameters land: the valley of the cost bends, so
+    that no point on a straight line shows how low it runs there. Rounds take fine and coarse differences for the
+    Jacobian in turn. It ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
@@ -49,14 +74,14 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
             _lowest(estimator, fit, axes),
             *(_values(estimator, fit, side * REACHES[-1] * axes[0]) for side in (-0.5, 0.5) if number > 0),
         ]
-        starts += _landings(estimator, fit) if number == 0 else []
+        starts += _landings(estimator, fit) if leaping and number == 0 else []
         descents = [estimator.fit(fit.explanation, start, BRIEF, steps=steps) for start in starts]
         again = min(descents, key=lambda descent: descent.chi2)
         idle = idle + 1 if fit.chi2 - again.chi2 < fit.repetition else 0
         fit = again if again.chi2 <= fit.chi2 else fit
         if idle == 2:
             break
-    return replace(fit, refined=True)
+    return fit
 
 
 def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:

@@ -68,14 +68,14 @@ def _first(candidate: Candidate, progress: Callable[[str], None]) -> list[Entry]
 
 
 def _second(entry: Entry, progress: Callable[[str], None]) -> Entry:
-    """The entry carried on; where events jump, also a fit that forgives large errors."""
+    """The entry carried on; where events jump, also one that has come between rests first, large errors forgiven."""
     candidate, explanation = entry.candidate, entry.candidate.explanation
     progress(explanation.label)
     estimator = candidate.estimator
     fits = [estimator.fit(explanation, entry.fit.values, ROUNDS // 2)]
     if candidate.jumps and not adequate(fits[0]):
-        forgiving = estimator.fit(explanation, entry.start, ROUNDS, forgiving=True)
-        fits.append(estimator.fit(explanation, forgiving.values, ROUNDS))
+        smooth = estimator.between_rests.fit(explanation, entry.start, ROUNDS, forgiving=True)
+        fits.append(estimator.fit(explanation, smooth.values, ROUNDS))
     return replace(entry, fit=min(fits, key=lambda fit: fit.ratio))
 
 

@@ -33,6 +33,10 @@ class Track:
         self.ratio = ratio
         self.asked: list[tuple[str, int, bool]] = []
 
+    @property
+    def between_rests(self) -> "Track":
+        return self
+
     def fit(
         self, explanation: Explanation, start: dict[str, float], iterations: int, *, forgiving: bool = False
     ) -> Fit:

@@ -1,0 +1,34 @@
+"""Recordings cut where the shaft rests: what slips at the wrong moment then displaces nothing beyond the next rest.
+
+Dry friction lets the shaft rest anywhere, so the cost of a whole recording is rough: one slip that comes early moves
+all that follows. Where the shaft rests its state is known but for the noise, so that each part may begin there
+(multiple shooting: Bock, Plitt, IFAC Proceedings 17 (1984) 1603-1608). What a model else remembers, heat or play,
+starts afresh: the values so found are where a fit to whole recordings begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.initial_state import InitialState, rests_of
+from pierburg_ros.estimation.run import Run
+
+
+def cut_at_rests(data: Data) -> Data:
+    """`data` with every run cut in the middle of each rest; what begins again and again anyway stays as it is."""
+    return replace(data, runs=tuple(part for run in data.runs for part in _parts(run)))
+
+
+def _parts(run: Run) -> Iterator[Run]:
+    noise = run.start.noise
+    rests = [] if run.shooting else [rest for rest in rests_of(run.measured, noise) if rest.start > 0]
+    levels = (float(np.mean(run.measured[rest])) for rest in rests)
+    starts = [run.start, *(InitialState(level, 0.0, noise, True) for level in levels)]
+    edges = [0, *((rest.start + rest.stop) // 2 for rest in rests), run.time.size]
+    for start, (first, last) in zip(starts, pairwise(edges), strict=True):
+        yield replace(run.part(slice(first, last)), start=start)
