@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
+from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.diagnosis.search.selection import alike
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, alike, allowance, complete, gain
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Fit
@@ -19,22 +20,35 @@ step the others would have to take over all of it, and events would jump. Not va
 
 
 def fit_rivals(search: Search, best: Fit) -> None:
-    """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters."""
+    """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters.
+
+    Where events jump and something is left, other drifts start from the values of `best` as well.
+    """
     limit = alike(best)
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
         search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
-        if isinstance(quantity, Variant):
-            for rival in _by_parameters(rest, search.drifts):
-                known = search.fits.get(rival)
-                if known is None or known.misfit > limit:
-                    _take_over(search, rival, quantity, best)
+        rivals = list(_by_parameters(rest, search.drifts, 2 if isinstance(quantity, Variant) else 1))
+        for rival in rivals:
+            known = search.fits.get(rival)
+            if isinstance(quantity, Variant) and (known is None or known.misfit > limit):
+                _take_over(search, rival, quantity, best)
+            elif jumps(rest) and not complete(best):
+                # grown on the rest, its effects have first been bent to stand for the drift
+                search.add(rival, best.values)
+        fits = (search.fits[rival] for rival in rivals if rival in search.fits)
+        search.refine([fit for fit in fits if not complete(best) or _close(fit, best, search)])
 
 
-def _by_parameters(rest: Explanation, drifts: tuple[str, ...]) -> Iterator[Explanation]:
-    """`rest` with one or two more parameters that drift."""
+def _close(rival: Fit, best: Fit, search: Search) -> bool:
+    """Whether the `best` gains no more on a rival than one more quantity has to: another local minimum may decide."""
+    return gain(rival, best) <= SIGNIFICANT + allowance(rival, search.data) / best.repetition
+
+
+def _by_parameters(rest: Explanation, drifts: tuple[str, ...], most: int) -> Iterator[Explanation]:
+    """`rest` with one more parameter that drifts, two more, up to `most`."""
     free = [name for name in drifts if name not in rest.drifted and name != rest.changed]
-    for others in (*itertools.combinations(free, 1), *itertools.combinations(free, 2)):
+    for others in (each for count in range(1, most + 1) for each in itertools.combinations(free, count)):
         key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), drifts)
         if key is not None:
             yield key

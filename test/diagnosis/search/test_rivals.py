@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 
 import pytest
-from support.recordings import NOMINAL, data_on, recording
+from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Search
@@ -77,3 +77,18 @@ def test_a_drift_has_no_rivals_but_what_may_be_added_without_it(pool: Executor) 
     best = search.add(Explanation(("spring_preload",)))
     with_rivals(search, best, ("spring_preload", "coulomb_friction"))
     assert set(search.fits) == {Explanation(("spring_preload",)), Explanation()}
+
+
+def test_another_drift_beside_what_jumps_starts_from_the_best_values(pool: Executor) -> None:
+    """Grown on stiction alone, whose values stand for the drift by then, it would stop at 100 times the noise."""
+    truth = {
+        "spring_preload": 0.285,
+        "static_friction.breakaway_torque": 0.27,
+        "static_friction.stribeck_velocity": 0.1,
+    }
+    stiction = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
+    search = Search(data_on(recording_in_closed_loop(truth, seed=1)), NOMINAL, pool)
+    best = search.add(Explanation(("spring_stiffness",), (stiction,)), truth)
+    assert best.ratio > 10.0
+    other = with_rivals(search, best, ("spring_stiffness", "spring_preload")).fits
+    assert other[Explanation(("spring_preload",), (stiction,))].ratio < 1.5
