@@ -2,16 +2,10 @@
 
 import numpy as np
 import pytest
+from support.tables import refusal
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording import Channel, Recording, read_recording
-
-
-def refusal(path, **options) -> str:
-    with pytest.raises(InputError) as refused:
-        read_recording(path, **options)
-    assert "\n" not in str(refused.value)
-    return str(refused.value)
 
 
 def test_missing_file(tmp_path):

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from support.tables import refusal, table
 
-from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 
 ROWS = """time,duty,hall_voltage,supply_voltage,setpoint,temperature,enabled
@@ -13,20 +13,8 @@ ROWS = """time,duty,hall_voltage,supply_voltage,setpoint,temperature,enabled
 """
 
 
-def write(tmp_path, text, name="run.csv"):
-    path = tmp_path / name
-    path.write_text(text)
-    return path
-
-
-def refusal(path, **options) -> str:
-    with pytest.raises(InputError) as refused:
-        read_recording(path, **options)
-    return str(refused.value)
-
-
 def test_reads_every_column(tmp_path):
-    recording = read_recording(write(tmp_path, ROWS))
+    recording = read_recording(table(tmp_path, ROWS))
     assert recording.quantity == "hall_voltage" and recording.time_source == "column"
     np.testing.assert_allclose(recording.time, [0.0, 0.1, 0.2])
     np.testing.assert_array_equal(recording.measured, [0.42, 0.5, 0.7])
@@ -38,7 +26,7 @@ def test_reads_every_column(tmp_path):
 
 
 def test_reads_position_and_semicolons_and_named_columns(tmp_path):
-    path = write(tmp_path, "\ufefft;pwm;position\n0;0.1;0.0\n0.1;0.1;0.2\n")
+    path = table(tmp_path, "\ufefft;pwm;position\n0;0.1;0.0\n0.1;0.1;0.2\n")
     recording = read_recording(path, topics={"time": "t", "duty": "pwm"})
     assert recording.unit == "rad" and recording.measured.tolist() == [0.0, 0.2]
 
@@ -51,35 +39,35 @@ def test_reads_a_header_as_numpy_writes_it(tmp_path):
 @pytest.mark.parametrize("header", ["t;duty;position\n", "# t;duty;position\n"])
 def test_notes_in_front_of_the_header_are_passed_over(tmp_path, header):
     text = f"# bench 3, 2026-11-20, throttle A\n#\n{header}0,0;0;0,5\n0,1;0;0,7\n"
-    assert read_recording(write(tmp_path, text), topics={"time": "t"}).measured.tolist() == [0.5, 0.7]
+    assert read_recording(table(tmp_path, text), topics={"time": "t"}).measured.tolist() == [0.5, 0.7]
 
 
 def test_reads_truth_values(tmp_path):
-    path = write(tmp_path, "time,duty,position,enabled\n0,0,0,True\n1,0,1,false\n")
+    path = table(tmp_path, "time,duty,position,enabled\n0,0,0,True\n1,0,1,false\n")
     assert read_recording(path).enabled.values.tolist() == [1.0, 0.0]
 
 
 def test_no_header(tmp_path):
-    assert refusal(write(tmp_path, "0.0,0.1,0.42\n0.1,0.1,0.5\n")) == (
+    assert refusal(table(tmp_path, "0.0,0.1,0.42\n0.1,0.1,0.5\n")) == (
         "run.csv has no header (its first row is 0.0,0.1,0.42), expected time, duty, and hall_voltage or"
         " position. Add a first row with the names of the columns."
     )
 
 
 def test_no_header_where_decimals_have_a_comma(tmp_path):
-    assert "has no header (its first row is 0,0;0,1;0,42)" in refusal(write(tmp_path, "0,0;0,1;0,42\n"))
+    assert "has no header (its first row is 0,0;0,1;0,42)" in refusal(table(tmp_path, "0,0;0,1;0,42\n"))
 
 
 def test_several_columns_of_one_name_are_refused_where_they_are_read(tmp_path):
     text = "time,duty,{},hall_voltage,{}\n0,0,1,0.4,2\n1,0,1,0.5,2\n"
-    assert read_recording(write(tmp_path, text.format("note", "note"))).measured.tolist() == [0.4, 0.5]
-    assert refusal(write(tmp_path, text.format("note", "duty"))) == (
+    assert read_recording(table(tmp_path, text.format("note", "note"))).measured.tolist() == [0.4, 0.5]
+    assert refusal(table(tmp_path, text.format("note", "duty"))) == (
         "run.csv has several columns duty, expected one. Rename the others."
     )
 
 
 def test_no_duty_column(tmp_path):
-    assert refusal(write(tmp_path, "time,pwm,hall_voltage\n0,0,0\n1,0,0\n")) == (
+    assert refusal(table(tmp_path, "time,pwm,hall_voltage\n0,0,0\n1,0,0\n")) == (
         "run.csv has no duty column (found: time, pwm, hall_voltage), expected time, duty, and hall_voltage"
         " or position. Name it with --topic duty=COLUMN."
     )
@@ -111,10 +99,10 @@ def test_no_duty_column(tmp_path):
     ],
 )
 def test_faults_are_named(tmp_path, text, message):
-    assert refusal(write(tmp_path, text)) == message
+    assert refusal(table(tmp_path, text)) == message
 
 
 def test_a_chosen_clock_is_refused(tmp_path):
-    assert refusal(write(tmp_path, ROWS), time="log") == (
+    assert refusal(table(tmp_path, ROWS), time="log") == (
         "run.csv has one clock, its time column; expected no --time. Leave it out."
     )

@@ -4,22 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from support.tables import refusal, table
 
-from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 from pierburg_ros.recording.formats.headings import Heading, is_units
-
-
-def write(tmp_path, text):
-    path = tmp_path / "run.csv"
-    path.write_text(text)
-    return path
-
-
-def refusal(path, **options) -> str:
-    with pytest.raises(InputError) as refused:
-        read_recording(path, **options)
-    return str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -74,14 +62,14 @@ def test_a_row_of_units_has_a_unit_and_no_value(row, states):
     ],
 )
 def test_what_the_table_states_counts(tmp_path, text):
-    recording = read_recording(write(tmp_path, text))
+    recording = read_recording(table(tmp_path, text))
     np.testing.assert_allclose(recording.time, [0.0, 0.01])
     np.testing.assert_allclose(recording.command.values, [0.5, 0.0])
     np.testing.assert_allclose(recording.measured, [math.pi / 2, math.pi])
 
 
 def test_a_map_with_a_unit_or_scale_counts_for_itself_and_one_with_a_name_does_not(tmp_path):
-    path = write(tmp_path, "t [s],pwm [%],angle\n0,50,1\n1,0,2\n")
+    path = table(tmp_path, "t [s],pwm [%],angle\n0,50,1\n1,0,2\n")
     named = {"time": {"column": "t [s]"}, "position": {"column": "angle"}}
     maps = [{**named, "duty": {"column": "pwm [%]", **each}} for each in ({}, {"scale": 0.02})]
     duties = [read_recording(path, signals=each).command.values for each in maps]
@@ -140,9 +128,9 @@ def test_parts_may_state_different_units(tmp_path):
     ],
 )
 def test_what_is_half_broken_is_named(tmp_path, text, message):
-    assert refusal(write(tmp_path, text)) == message
+    assert refusal(table(tmp_path, text)) == message
 
 
 def test_an_unknown_unit_of_a_column_that_is_not_read_does_no_harm(tmp_path):
-    path = write(tmp_path, "time,duty,position,pressure\ns,1,rad,furlong\n0,0,0,1\n1,0,1,1\n")
+    path = table(tmp_path, "time,duty,position,pressure\ns,1,rad,furlong\n0,0,0,1\n1,0,1,1\n")
     assert read_recording(path).measured.tolist() == [0.0, 1.0]

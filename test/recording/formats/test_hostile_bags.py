@@ -5,8 +5,8 @@ import struct
 
 import pytest
 import zstandard
+from support.tables import refusal
 
-from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 
 INFORMATION = (
@@ -44,12 +44,6 @@ def bag(folder, names="[a_0.db3]", mode="", kind="zstd", **files):
     for name, content in files.items():
         (folder / name).write_bytes(content)
     return folder
-
-
-def refusal(path) -> str:
-    with pytest.raises(InputError) as refused:
-        read_recording(path)
-    return str(refused.value)
 
 
 def test_a_plain_file_and_every_packing_read_alike(tmp_path):

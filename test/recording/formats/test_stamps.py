@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from support.tables import refusal, table
 
-from pierburg_ros.errors import InputError
 from pierburg_ros.recording import read_recording
 from pierburg_ros.recording.formats.stamps import nanoseconds
 
@@ -12,16 +12,8 @@ MOMENT = 1_772_366_400 * 10**9
 
 
 def write(tmp_path, stamps, name="run.csv", delimiter=","):
-    path = tmp_path / name
     rows = [delimiter.join([stamp, "0.1", str(place)]) for place, stamp in enumerate(stamps)]
-    path.write_text("\n".join([delimiter.join(["time", "duty", "position"]), *rows]) + "\n")
-    return path
-
-
-def refusal(path, **options) -> str:
-    with pytest.raises(InputError) as refused:
-        read_recording(path, **options)
-    return str(refused.value)
+    return table(tmp_path, "\n".join([delimiter.join(["time", "duty", "position"]), *rows]) + "\n", name)
 
 
 @pytest.mark.parametrize(
