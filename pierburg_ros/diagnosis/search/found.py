@@ -117,6 +117,7 @@ def _grown(
             found.run()
         if not found.resigned:
             fit_rivals(found, found.preferred())
+            found.pruned()
     return found
 
 

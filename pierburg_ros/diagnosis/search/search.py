@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -67,6 +68,7 @@ class Search:
         self.first_part = Estimator(data.cut(FIRST_PART * data.scales.time), nominal)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
+        self.stood: set[Explanation] = set()
         self.tried = self.waiting = 0
         self.pool = pool
         self.beside: Beside | None = None
@@ -84,7 +86,7 @@ class Search:
             if leading is None:
                 break
             self._grow(leading)
-            best = self._pruned()
+            best = self.pruned()
             if best.explanation.size <= size and adequate(best):
                 break
             size = max(size + 1, best.explanation.size)
@@ -259,15 +261,15 @@ class Search:
         best = self.best_of_size(size)
         return best is not None and complete(best)
 
-    def _pruned(self) -> Fit:
+    def pruned(self) -> Fit:
         """The preferred explanation after each of its parts has been fitted again from its values.
 
         A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins: from the
-        lowest of the larger one's minima, since from beside it the smaller one may stop again. So does one of its size
-        with a drift in the place of an effect.
+        lowest of the larger one's minima, since from beside it the smaller one may stop again. So does one with a drift
+        in the place of two of its quantities, or of an effect. Whichever is preferred then has to stand the same.
         """
-        best = self.preferred()
-        while True:
+        while (best := self.preferred()).explanation not in self.stood:
+            self.stood.add(best.explanation)
             if best.explanation.size > 1 and jumps(best.explanation):
                 self._refine(best)
                 best = self.fits[best.explanation]
@@ -275,21 +277,28 @@ class Search:
                 smaller = self.add(without(best.explanation, quantity), best.values)
                 if _near(smaller, best):
                     self._refine(smaller)
-            simpler = _simpler(best.explanation, self.drifts)
-            self.refine(list(self.pool.map(partial(self.add, start=best.values), simpler)))
-            kept = self.preferred()
-            if kept.explanation.size >= best.explanation.size:
-                return kept
-            best = kept
+            for simpler in (_smaller(best.explanation, self.drifts), _simpler(best.explanation, self.drifts)):
+                self.refine(list(self.pool.map(partial(self.add, start=best.values), simpler)))
+        return best
+
+
+def _smaller(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
+    """An explanation with a drift in the place of two of its quantities, where events still jump: others stop nowhere."""
+    pairs = itertools.combinations(quantities(explanation), 2)
+    return _drifting_too(filter(jumps, (without(without(explanation, one), other) for one, other in pairs)), drifts)
 
 
 def _simpler(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
     """An explanation with a drift in the place of one of its effects, where another effect stays."""
     if len(explanation.variants) < 2:
         return []
-    rests = (without(explanation, variant) for variant in explanation.variants)
-    swapped = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
-    return [found for found in dict.fromkeys(canonical(each, drifts) for each in swapped) if found is not None]
+    return _drifting_too((without(explanation, variant) for variant in explanation.variants), drifts)
+
+
+def _drifting_too(rests: Iterable[Explanation], drifts: tuple[str, ...]) -> list[Explanation]:
+    """Each of the `rests` with each of the `drifts`."""
+    found = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
+    return [each for each in dict.fromkeys(canonical(each, drifts) for each in found) if each is not None]
 
 
 def _near(fit: Fit, best: Fit) -> bool:
