@@ -104,6 +104,8 @@ class Search:
         if len(seeds) > 1:
             had_resigned = self.resigned
             self._fit_most_promising(seeds)
+            if self._stopped_early(size + 1):
+                self.refine(self.of_size(size + 1))
             if self._complete(size + 1) or self._likeliest_accounts_for_all():
                 return
             if not had_resigned:
@@ -131,8 +133,12 @@ class Search:
         leading = self.best_of_size(size)
         if leading is None or adequate(best) or complete(leading):
             return False
-        early = jumps(leading.explanation) and leading.ratio < NEARLY
-        return size > 1 or early or self.preferred(1).explanation.size == 0
+        return size > 1 or self._stopped_early(size) or self.preferred(1).explanation.size == 0
+
+    def _stopped_early(self, size: int) -> bool:
+        """Whether the best of a `size` may only have stopped in a local minimum before it accounts for all."""
+        leading = self.best_of_size(size)
+        return leading is not None and not complete(leading) and jumps(leading.explanation) and leading.ratio < NEARLY
 
     def _seeds(self, best: Fit) -> list[Fit]:
         """Fits of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
