@@ -289,7 +289,7 @@ class Search:
 
 
 def _smaller(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
-    """An explanation with a drift in the place of two of its quantities, where events still jump: others stop nowhere."""
+    """An explanation with a drift in the place of two of its quantities, where events jump beside it."""
     pairs = itertools.combinations(quantities(explanation), 2)
     return _drifting_too(filter(jumps, (without(without(explanation, one), other) for one, other in pairs)), drifts)
 

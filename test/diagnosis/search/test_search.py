@@ -91,6 +91,9 @@ class Grown(Search):
     def refine(self, fits: object) -> None:
         pass
 
+    def _refine(self, fit: object) -> None:
+        pass
+
     def _fit_most_promising(self, seeds: object) -> None:
         pass
 
@@ -168,6 +171,31 @@ def test_a_drift_gets_its_chance_in_the_place_of_one_of_two_effects(short: Data,
 
     found = Stopped(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, with_drift: 1.0, two: 1.005}, Beam(depth=2))
     assert found.run().explanation == with_drift
+
+
+THREE = Explanation((), tuple(variant for one in (ONES[3], ONES[2], ONES[0]) for variant in one.variants))
+"""Play, where events jump, a dead band and a lag."""
+SWAPPED = Explanation(("spring_preload",), THREE.variants[:2])
+
+
+@pytest.mark.parametrize("ways", [{THREE: PAIRS[3]}, {THREE: SWAPPED, SWAPPED: PAIRS[3]}], ids=["at once", "in turn"])
+def test_a_drift_and_an_effect_get_their_chance_from_the_values_of_three(
+    short: Data, pool: Executor, ways: dict[Explanation, Explanation]
+) -> None:
+    """Each explanation comes to the noise from the end of another alone, told by a value; three effects have."""
+    ends = {explanation: 0.2 + 0.01 * place for place, explanation in enumerate([*ways, PAIRS[3]], 1)}
+    starts = {to: ends[larger] for larger, to in ways.items()}
+
+    class Stopped(Grown):
+        def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
+            led = start is not None and starts.get(explanation) == start["coulomb_friction"]
+            end = {"coulomb_friction": ends[explanation]} if led else {}
+            return self.keep(made_up(explanation, 1.0 if led else 9.0, NOMINAL, end))
+
+    found = Stopped(short, pool, {}, Beam())
+    found.add(NOTHING)
+    found.keep(made_up(THREE, 1.0, NOMINAL, {"coulomb_friction": ends[THREE]}))
+    assert found.pruned().explanation == PAIRS[3]
 
 
 def test_what_accounts_for_all_is_not_grown(short: Data, pool: Executor) -> None:
