@@ -12,6 +12,7 @@ from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
@@ -43,7 +44,7 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
     for way in (_without_stretches, _beside_slow_quantities):
         for tried in way(found, fits, recording, deadline, progress):
             again = search(tried, found.nominal, progress, jobs, deadline=deadline)
-            if again.chosen.ratio <= EXPLAINED:
+            if adequate(again.chosen):
                 return again
     return found
 

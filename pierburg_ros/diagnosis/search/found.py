@@ -14,14 +14,13 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Search
-from pierburg_ros.diagnosis.search.selection import overlooks
+from pierburg_ros.diagnosis.search.selection import adequate, overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import Estimate, estimates
-from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
@@ -91,7 +90,7 @@ def search(
         chosen = found.preferred() if found.fits else found.add(Explanation())
         recalibrated = _recalibrated(found, pool)
     final, known = chosen, dict[str, Estimate]()
-    if chosen.ratio <= EXPLAINED:
+    if adequate(chosen):
         final, known = deadline.attempt(lambda: _last_values(found, chosen, jobs, deadline), (final, known))
     fits = dict(found.fits)
     return Found(

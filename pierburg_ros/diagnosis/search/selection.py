@@ -53,7 +53,7 @@ def white(fit: Fit) -> bool:
 
 
 def adequate(fit: Fit) -> bool:
-    """Whether an explanation leaves nothing worth a search among others of its size."""
+    """Whether an explanation leaves no structure, and so nothing worth a search among others of its size."""
     return fit.ratio <= ADEQUATE or white(fit)
 
 

@@ -11,13 +11,14 @@ from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
 from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
-from pierburg_ros.estimation.likelihood import EXPLAINED, OFF_GRID
+from pierburg_ros.estimation.likelihood import OFF_GRID
 from pierburg_ros.plant import Model
 
 FEWEST = 2.0**-8
@@ -102,7 +103,7 @@ def _tied(base: Fit, weights: Mapping[str, Weight]) -> list[Alternative]:
 
 def verdict_on(chosen: Fit) -> Verdict:
     """The verdict that a chosen explanation stands for."""
-    if chosen.ratio > EXPLAINED:
+    if not adequate(chosen):
         return "unexplained"
     if chosen.explanation.variants:
         return "missing_physics"

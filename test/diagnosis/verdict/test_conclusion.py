@@ -49,6 +49,19 @@ def test_the_verdict_is_what_was_changed_unless_a_tenth_of_the_noise_is_left(
     assert verdict_on(made_up(explanation, ratio, NOMINAL)) == verdict
 
 
+@pytest.mark.parametrize(
+    ("drifting", "verdict"), [(0.0, "missing_physics"), (0.2, "missing_physics"), (0.35, "unexplained")]
+)
+def test_little_may_be_left_and_up_to_a_tenth_of_the_noise_if_it_is_white(drifting: float, verdict: str) -> None:
+    """Noise that is 6 % above its estimate is noise; what drifts slowly beneath it is physics that nothing names."""
+    white = made_up(Explanation((), (LAG,)), 1.0, NOMINAL)
+    slow = drifting * np.sqrt(2.0) * np.sin(np.linspace(0.0, 20.0, white.solution.residual.size))
+    residual = white.solution.residual + slow if drifting else 1.06 * white.solution.residual
+    fit = replace(white, solution=replace(white.solution, residual=residual))
+    assert fit.ratio == pytest.approx(np.sqrt(1.0 + drifting**2) if drifting else 1.06, rel=0.02)
+    assert verdict_on(fit) == verdict
+
+
 def supported(found: Found, effect: str) -> tuple[float, float | None]:
     support = conclude(found).supports[effect]
     return support.confidence, support.gain
