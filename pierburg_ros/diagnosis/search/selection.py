@@ -47,19 +47,24 @@ def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
     return estimator.validation_misfit(larger) <= _highest(estimator.validation_misfit(smaller), larger)
 
 
-def white(fit: Fit) -> bool:
-    """Whether an explanation leaves white noise, up to a tenth above the estimate, which is uncertain."""
-    return fit.ratio < EXPLAINED and fit.repetition < WHITE
-
-
 def adequate(fit: Fit) -> bool:
     """Whether an explanation leaves no structure, and so nothing worth a search among others of its size."""
-    return fit.ratio <= ADEQUATE or white(fit)
+    return unstructured(fit.ratio, fit.repetition)
+
+
+def unstructured(ratio: float, repetition: float) -> bool:
+    """Whether a residual is nothing but noise, by its `ratio` to the noise estimated."""
+    return ratio <= ADEQUATE or _white(ratio, repetition)
 
 
 def complete(fit: Fit) -> bool:
     """Whether an explanation leaves so little that the search among those of its size may end."""
-    return fit.ratio <= COMPLETE or white(fit)
+    return fit.ratio <= COMPLETE or _white(fit.ratio, fit.repetition)
+
+
+def _white(ratio: float, repetition: float) -> bool:
+    """Whether a residual is white, up to a tenth above the noise estimated, which is uncertain."""
+    return ratio < EXPLAINED and repetition < WHITE
 
 
 def accounts_for_all(fit: Fit, data: Data) -> bool:
