@@ -45,16 +45,16 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
     """
     if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
         return replace(_descended(estimator, fit, leaping=True), refined=True)
-    lower = _descended_by_rests(estimator, fit)
+    lower = _descended_by_rests(estimator, fit, leaping=True)
     while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
-        fit, lower = lower, _descended_by_rests(estimator, lower)
+        fit, lower = lower, _descended_by_rests(estimator, lower, leaping=False)
     return replace(lower, refined=True)
 
 
-def _descended_by_rests(estimator: Estimator, fit: Fit) -> Fit:
+def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
     """`fit`, or a lower one, descended to between rests first and then along whole recordings."""
     rests = estimator.between_rests
-    smooth = _descended(rests, rests.fit(fit.explanation, fit.values), leaping=True)
+    smooth = _descended(rests, rests.fit(fit.explanation, fit.values), leaping)
     nearest = min(fit, estimator.fit(fit.explanation, smooth.values), key=lambda each: each.chi2)
     return _descended(estimator, nearest, leaping=False)
 
