@@ -39,7 +39,7 @@ AHEAD = 2
 
 @dataclass(frozen=True)
 class Lost:
-    """What stands for the result of a piece of work whose process ended under it, again when it ran alone."""
+    """What stands for the result of a piece of work whose process ended under it, again and again when it ran alone."""
 
     reason: str
 
@@ -66,7 +66,7 @@ def _ended(
     suspects: deque[Item] = deque()
     while True:
         if suspects and not under_way:
-            yield _alone(pool(), work, suspects.popleft())
+            yield _alone(pool, work, suspects.popleft())
             continue
         if not suspects:
             for item in islice(left, max(room() - len(under_way), 0)):
@@ -85,11 +85,14 @@ def _ended(
                 yield item, Lost(REASON)
 
 
-def _alone(pool: Executor, work: Callable[[Item], Result], item: Item) -> tuple[Item, Result | Lost]:
-    try:
-        return item, pool.submit(work, item).result()
-    except BrokenProcessPool:
-        return item, Lost(REASON)
+def _alone(pool: Callable[[], Executor], work: Callable[[Item], Result], item: Item) -> tuple[Item, Result | Lost]:
+    """The result of an item by itself, at the second try if need be: before that it may not even have begun."""
+    for _ in range(2):
+        try:
+            return item, pool().submit(work, item).result()
+        except BrokenProcessPool:
+            continue
+    return item, Lost(REASON)
 
 
 @contextmanager

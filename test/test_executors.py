@@ -27,6 +27,15 @@ def test_a_process_that_dies_costs_only_the_work_that_kills_it_again(tmp_path):
     assert found == {number: 2 * number for number in range(8) if number != 3}
 
 
+def test_work_that_waited_when_a_process_died_may_still_kill_its_own_once(tmp_path):
+    """3 and 5 are under way together, in one process: 5 has not begun when that ends."""
+    assert dict(ended(partial(fatal, tmp_path), [5], jobs=1)) == {5: 10}
+    (tmp_path / "5").unlink()
+    found = dict(ended(partial(fatal, tmp_path), [3, 5], jobs=2))
+    assert isinstance(found[3], Lost)
+    assert found[5] == 10
+
+
 def test_no_more_is_begun_than_there_are_workers(tmp_path):
     begun = []
 
