@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, alike, allowance, complete, gain
+from pierburg_ros.diagnosis.search.selection import alike, complete, gains_enough
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Fit
@@ -37,12 +37,9 @@ def fit_rivals(search: Search, best: Fit) -> None:
                 # grown on the rest, its effects have first been bent to stand for the drift
                 search.add(rival, best.values)
         fits = (search.fits[rival] for rival in rivals if rival in search.fits)
-        search.refine([fit for fit in fits if not complete(best) or _close(fit, best, search)])
-
-
-def _close(rival: Fit, best: Fit, search: Search) -> bool:
-    """Whether the `best` gains no more on a rival than one more quantity has to: another local minimum may decide."""
-    return gain(rival, best) <= SIGNIFICANT + allowance(rival, search.data) / best.repetition
+        # what lacks less than one more quantity has to gain may lack it by its local minimum alone
+        near = (fit for fit in fits if not complete(best) or not gains_enough(fit, best, 1, search.data))
+        search.refine(near)
 
 
 def _by_parameters(rest: Explanation, drifts: tuple[str, ...], most: int) -> Iterator[Explanation]:

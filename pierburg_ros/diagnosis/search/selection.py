@@ -36,13 +36,18 @@ def gain(smaller: Fit, larger: Fit) -> float:
     return (smaller.misfit - larger.misfit) / larger.repetition
 
 
+def gains_enough(smaller: Fit, larger: Fit, more: int, data: Data) -> bool:
+    """Whether so many quantities `more` gain what each has to, beyond what simulations of the smaller may differ by."""
+    return gain(smaller, larger) > SIGNIFICANT * more + allowance(smaller, data) / larger.repetition
+
+
 def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
     """Whether a larger explanation gains more than chance and the difference of simulators can give it.
 
     It may not fail on the validation samples where the smaller one does not: then it fits the training samples alone.
     """
     more = larger.explanation.size - smaller.explanation.size
-    if gain(smaller, larger) <= SIGNIFICANT * more + allowance(smaller, estimator.data) / larger.repetition:
+    if not gains_enough(smaller, larger, more, estimator.data):
         return False
     return estimator.validation_misfit(larger) <= _highest(estimator.validation_misfit(smaller), larger)
 
