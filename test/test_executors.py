@@ -11,7 +11,7 @@ import pytest
 from support.pieces_of_work import doubled, fatal, slow
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.executors import Lost, ended
+from pierburg_ros.executors import Lost, _alone, ended, machine
 
 PATIENCE = 60.0
 
@@ -28,7 +28,10 @@ def test_a_process_that_dies_costs_only_the_work_that_kills_it_again(tmp_path):
 
 
 def test_work_that_waited_when_a_process_died_may_still_kill_its_own_once(tmp_path):
-    """3 and 5 are under way together, in one process: 5 has not begun when that ends."""
+    """Whether 5 has begun when 3 ends a process is chance; by itself it has not."""
+    with machine(1) as (pool, _):
+        assert _alone(pool, partial(fatal, tmp_path), 5) == (5, 10)
+    (tmp_path / "5").unlink()
     assert dict(ended(partial(fatal, tmp_path), [5], jobs=1)) == {5: 10}
     (tmp_path / "5").unlink()
     found = dict(ended(partial(fatal, tmp_path), [3, 5], jobs=2))
