@@ -79,12 +79,15 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
             or rescaled(signals, given, nominal)
         )
     elif not found:
-        found = mended(signals, given, nominal)
+        found = mended(signals, given, nominal, recording)
     return [found] if found else []
 
 
-def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault | None:
-    """The slip that, once undone, lets the actuator explain the motion; otherwise that nothing does."""
+def mended(signals: Signals, given: Explained | None, nominal: Model, recording: Recording) -> Fault | None:
+    """The slip that, once undone, lets the actuator explain the motion; otherwise that nothing does.
+
+    An input that plainly causes the motion in another part of the recording is the right one: something else has acted.
+    """
     named = (*slips(signals, nominal), *shifted(signals, given))
     left = BETTER * given.cost if given is not None else 1.0
     found = undone(named, left, nominal) or undone(tuple(between_stops(signals, nominal)), left, nominal)
@@ -92,7 +95,15 @@ def mended(signals: Signals, given: Explained | None, nominal: Model) -> Fault |
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
     moves = given is not None and given.share >= ENOUGH
     agrees = given is not None and given.agreement >= ENOUGH
-    return None if moves and (agrees or in_balance(signals, nominal)) else unrelated(signals, given, nominal)
+    if (moves and (agrees or in_balance(signals, nominal))) or causes(Signals.elsewhere(recording), nominal):
+        return None
+    return unrelated(signals, given, nominal)
+
+
+def causes(signals: Signals | None, nominal: Model) -> bool:
+    """Whether the actuator plainly explains the motion by its input as it is read."""
+    given = explained_if_possible(signals, nominal) if signals else None
+    return given is not None and given.suffices and min(given.share, given.agreement) >= PLAINLY
 
 
 def rescaled(signals: Signals, given: Explained, nominal: Model) -> Fault | None:

@@ -34,7 +34,21 @@ class Signals:
     @staticmethod
     def of(recording: Recording, samples: int = SAMPLES) -> Signals:
         """The part of `recording` in which the most moves, so many `samples`."""
-        kept = _liveliest(recording.measured, samples)
+        return Signals._at(recording, _liveliest(recording.measured, samples))
+
+    @staticmethod
+    def elsewhere(recording: Recording) -> Signals | None:
+        """As `of`, from the longer of what lies before and after that part; None where that is shorter than a third."""
+        taken, size = _liveliest(recording.measured, SAMPLES), recording.measured.size
+        before, after = (0, taken.start), (taken.stop, size)
+        start, end = max(before, after, key=lambda part: part[1] - part[0])
+        if end - start < (taken.stop - taken.start) // 3:
+            return None
+        kept = _liveliest(recording.measured[start:end], SAMPLES)
+        return Signals._at(recording, slice(start + kept.start, start + kept.stop))
+
+    @staticmethod
+    def _at(recording: Recording, kept: slice) -> Signals:
         return Signals(
             recording.name,
             recording.quantity,

@@ -12,8 +12,8 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.audit import audit
 from pierburg_ros.identification.description.told import bench
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
-from pierburg_ros.plant import Model
-from pierburg_ros.recording import Channel
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
 
 
 def benchmark(name):
@@ -165,3 +165,17 @@ def test_recordings_that_are_too_short_are_left_to_others(samples):
     one = recorded()
     short = replace(one, time=one.time[:samples], measured=one.measured[:samples], setpoints=None)
     assert audit([short], VALVE) == []
+
+
+def test_a_bridge_that_was_open_for_a_while_is_no_duty_of_another_run():
+    """It was where most moves; the duty still causes the motion before and after."""
+    time = np.arange(30_000) / 500.0
+    duty = np.repeat(np.random.default_rng(1).uniform(-0.1, 0.4, 75), 400)
+    duty = np.where(np.abs(time - 30.0) > 10.0, 0.15 + 0.3 * (duty - 0.15), duty)
+    away = (time > 25.0) & (time < 34.0)
+    hall = simulate(VALVE, Inputs(time, duty, None, ~away), time)
+    noise = 0.002 * np.random.default_rng(2).standard_normal(time.size)
+    given = Recording("open.mcap", "hall_voltage", time, hall + noise, Channel(time, duty))
+    assert not audit([given], VALVE)
+    other = Channel(time, np.repeat(np.random.default_rng(9).uniform(-0.1, 0.4, 75), 400))
+    assert audit([replace(given, command=other)], VALVE)
