@@ -50,7 +50,7 @@ class Reproduction:
 
     def kept_apart(self, data: Data) -> Data:
         """Real recordings in which the difference of the two simulators is no evidence."""
-        return replace(data, noise=float(np.hypot(data.noise, self.left)), unlike=self.left)
+        return data.kept_apart(self.left)
 
     def told(self, result: Result) -> Result:
         """A diagnosis against `model` that says so, with its model in the terms of the description."""

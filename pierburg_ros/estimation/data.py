@@ -18,7 +18,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
-from pierburg_ros.recording.noise import noise_of
+from pierburg_ros.recording.noise import noise_of, stamp_noise
 
 BLOCK = 15.7
 """Length of the blocks that train, validate and test in turn, in the actuator's own time; less in a recording shorter
@@ -52,12 +52,14 @@ class Omission:
 class Data:
     """All recordings of one actuator.
 
-    `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, and of what
-    missing messages of the duty may do. `step` is that of the converter where it is coarse beside the noise, otherwise
-    0; all in the measured unit. `left_out` are spans without a known input, and whatever else tells nothing of the
-    actuator; `warnings` is what to say first of recordings that lack messages, `remarks` of those that are dirty.
-    `disturbed`: a quantity that was not measured is taken to have wandered. `unlike` is by how much the nominal model
-    differs from the simulator that it stands for [measured unit, root mean square], 0 where it stands for none.
+    `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, of what missing
+    messages of the duty may do, and of stamps that are off. `step` is that of the converter where it is coarse beside
+    the noise, otherwise 0; all in the measured unit. `left_out` are spans without a known input, and whatever else
+    tells nothing of the actuator; `warnings` is what to say first of recordings that lack messages, `remarks` of those
+    that are dirty.
+    `disturbed`: a quantity that was not measured is taken to have wandered. `unlike` is how much of the noise moves
+    whole stretches and not single samples [measured unit, root mean square], so that as much is no evidence: stamps of
+    the input that are off, and what is `kept_apart`.
     """
 
     actuator: Actuator
@@ -70,6 +72,10 @@ class Data:
     remarks: tuple[str, ...] = ()
     disturbed: bool = False
     unlike: float = 0.0
+
+    def kept_apart(self, size: float) -> Data:
+        """With an error of such a `size` [measured unit, root mean square] as noise that is no evidence."""
+        return replace(self, noise=math.hypot(self.noise, size), unlike=math.hypot(self.unlike, size))
 
     @property
     def several(self) -> bool:
@@ -151,11 +157,14 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
     runs = tuple(run_of(part, model, number) for number, (parts, _) in enumerate(cut) for part in parts)
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
+    stamped = float(np.median([stamp_noise(run.time, run.measured, noise) for run in runs]))
     unknown = (Omission(number, span, UNKNOWN) for number, (_, found) in enumerate(cut) for span in found.left_out)
     finest, _ = DECLARED[STEP].expected(model.scales)
     step = coarse_step([run.measured for run in runs], noise, finest)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
-    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, (*unknown, *without), warnings)
+    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, (*unknown, *without), warnings).kept_apart(
+        stamped
+    )
 
 
 def in_parts(data: Data) -> Data:

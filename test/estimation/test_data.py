@@ -1,5 +1,7 @@
 """What fits see of recordings: noise, and the samples that train, validate and test."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
@@ -82,3 +84,20 @@ def test_a_recording_may_begin_anywhere(begin: float) -> None:
     run = data.runs[0]
     error = data.residual(NOMINAL.with_values(true))
     assert np.sqrt(np.mean(error[run.time - run.time[0] < 4.0] ** 2)) < 1.05
+
+
+def test_stamps_that_are_off_count_as_noise_and_as_no_evidence() -> None:
+    """Samples and duty are stamped off by a tenth of a period: the true model leaves no more than the noise told."""
+    true = recording({})
+    random = np.random.default_rng(3)
+
+    def shaken(time: np.ndarray) -> np.ndarray:
+        return np.sort(time + 0.0002 * random.standard_normal(time.size))
+
+    duty = replace(true.command, time=shaken(true.command.time))
+    off = data_on(replace(true, time=shaken(true.time), command=duty))
+    sharp = data_on(true)
+    assert sharp.unlike < 1e-3 * sharp.noise and off.unlike > 0.1 * off.noise
+    assert off.noise == pytest.approx(np.hypot(sharp.noise, off.unlike), rel=0.02)
+    left = np.sqrt(np.mean(np.square(off.residual(NOMINAL))))
+    assert 0.97 < left < 1.03 < left * off.noise / sharp.noise

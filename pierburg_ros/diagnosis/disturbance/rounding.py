@@ -29,7 +29,7 @@ class Rounding:
 
     def kept_apart(self, data: Data) -> Data:
         """`data` in which that counts as noise, and as much of the evidence as it could give is none."""
-        return replace(data, noise=float(np.hypot(data.noise, self.size)), unlike=self.size)
+        return data.kept_apart(self.size)
 
     def said(self, data: Data, unsettled: bool) -> Data:
         """`data` with a remark on it; `unsettled` where an explanation that stands out was not found beside it."""
