@@ -43,8 +43,8 @@ class Remainder:
 
 
 def unexamined(found: Found) -> Remainder:
-    """What stands where there is no time to look at what remains: the recalibrated model, and no effect."""
-    return Remainder(found.estimator.restated(found.recalibrated), {}, {}, {}, None)
+    """What stands where there is no time to look at what remains: the model below it, and no effect."""
+    return Remainder(found.estimator.restated(_below(found, None)), {}, {}, {}, None)
 
 
 def remainder(
@@ -86,11 +86,17 @@ def remainder(
 
 
 def _below(found: Found, shape: Shape | None) -> Fit:
-    """The model without an effect: what the `shape` that stands was fitted to, else the recalibrated one."""
-    explanation = found.recalibrated.explanation
-    values = found.recalibrated.values if shape is None else shape.base.values
-    changed = any(values[name] != found.nominal.values[name] for name in explanation.names)
-    return found.estimator.at(explanation if changed else Explanation(), values)
+    """The model without an effect: what the `shape` that stands was fitted to, else the recalibrated one.
+
+    The nominal model, where samples that validate do not improve by a tenth: numbers that only bend have not drifted.
+    """
+    recalibrated, nominal = found.recalibrated, found.fits[Explanation()]
+    if shape is None:
+        misfit = found.estimator.validation_misfit
+        return recalibrated if misfit(recalibrated) < BETTER**2 * misfit(nominal) else nominal
+    names = recalibrated.explanation.names
+    changed = any(shape.base.values[name] != found.nominal.values[name] for name in names)
+    return found.estimator.at(recalibrated.explanation if changed else Explanation(), shape.base.values)
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:

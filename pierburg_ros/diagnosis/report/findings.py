@@ -137,16 +137,20 @@ def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
 
 
 def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]:
-    """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted."""
+    """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted.
+
+    One that something remains beside may be moved without being told from its nominal value: that is no drift.
+    """
     actuator = found.data.actuator
     final = conclusion.final
     result = {}
     for name in actuator.parameters:
-        drifted = name in final.explanation.drifted or name == final.explanation.changed
-        known = conclusion.estimates.get(name)
+        known, nominal = conclusion.estimates.get(name), found.nominal.values[name]
+        told = known is None or not known.low <= nominal <= known.high
+        drifted = (name in final.explanation.drifted and told) or name == final.explanation.changed
         identifiable = known.identifiable if known else name in conclusion.recalibrated.explanation.drifted
         result[name] = BaseParameter(
-            nominal=found.nominal.values[name],
+            nominal=nominal,
             value=final.model.values[name],
             unit=actuator.shown(actuator.parameters[name].unit),
             ci95=(known.low, known.high) if known else None,

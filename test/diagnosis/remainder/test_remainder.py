@@ -8,6 +8,7 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.remainder.remainder import _below
 from pierburg_ros.diagnosis.remainder.shape import Shape
+from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.plant import Model
 
@@ -21,11 +22,21 @@ def shape_on(base: Model) -> Shape:
 
 def test_without_a_confirmed_shape_the_recalibrated_model_is_given_and_not_one_that_fits_worse():
     """A shape may be fitted to the model as described; where nothing comes of it, that model is no result."""
-    explanation = Explanation(("spring_stiffness",))
-    recalibrated = made_up(explanation, 3.0, NOMINAL, STIFFER)
-    found = replace(found_among(data_on(recording({}, duration=5.0)), recalibrated), recalibrated=recalibrated)
+    found, explanation = recalibrated_on(STIFFER), Explanation(("spring_stiffness",))
     alone, below_nominal = _below(found, None), _below(found, shape_on(NOMINAL))
     assert alone.explanation == explanation and alone.values["spring_stiffness"] == 0.17
     assert below_nominal.explanation == Explanation() and below_nominal.values["spring_stiffness"] == 0.1419
     kept = _below(found, shape_on(NOMINAL.with_values({"spring_stiffness": 0.16})))
     assert kept.explanation == explanation and kept.values["spring_stiffness"] == 0.16
+
+
+def test_numbers_that_unseen_samples_do_not_confirm_have_not_drifted():
+    below = _below(recalibrated_on({}), None)
+    assert below.explanation == Explanation() and below.values["spring_stiffness"] == 0.1419
+
+
+def recalibrated_on(changes: dict[str, float]) -> Found:
+    """A search of the valve with `changes` whose recalibrated model has the stiffer spring."""
+    recalibrated = made_up(Explanation(("spring_stiffness",)), 3.0, NOMINAL.with_values(STIFFER))
+    data, nominal = data_on(recording(changes, duration=5.0)), made_up(Explanation(), 5.0, NOMINAL)
+    return replace(found_among(data, recalibrated, nominal), recalibrated=recalibrated)
