@@ -9,11 +9,12 @@ from functools import partial
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
-from pierburg_ros.diagnosis.disturbance.apart import apart
+from pierburg_ros.diagnosis.disturbance.apart import apart, nominal_elsewhere
 from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
+from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, longest, signals
@@ -27,6 +28,8 @@ from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
+from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.turn import has_overtones
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -85,7 +88,8 @@ def examined(
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
     # what repeats itself with every turn is read from the balance of torques, not searched for order by order
     turning, single = has_overtones(data, nominal), len(recordings) == 1
-    if not turning and (rest := untouched(data, nominal, recordings)):
+    rest = untouched(data, nominal, recordings) or nominal_elsewhere(data, nominal, recordings)
+    if rest and not turning:
         # physics comes first
         found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)
         if verdict_on(found.chosen) != "unexplained":
@@ -109,16 +113,17 @@ def examined(
 
 
 def unseen_confirm(found: Found) -> bool:
-    """Whether effects beside a disturbance lower the error on samples that neither fit nor choice has used.
+    """Whether what is found beside a disturbance accounts for samples that test, and lowers the error there by a tenth.
 
-    What an unlogged quantity has done is estimated where the samples train, so that there little is left to miss.
+    What an unlogged quantity has done is estimated where the samples train, so that there little is left to miss: a
+    wrong effect fits there as well, and so does a parameter that is off by next to nothing.
     """
-    if not (found.data.disturbed and found.chosen.explanation.variants):
+    explanation = found.chosen.explanation
+    if not (found.data.disturbed and explanation.size):
         return True
-    before, after = (
-        rms(found.data.residual(fit.model, fit.switch)[found.data.test]) for fit in (found.recalibrated, found.final)
-    )
-    return after < before
+    known = found.recalibrated if explanation.variants else found.fits[Explanation()]
+    before, after = (rms(found.data.residual(fit.model, fit.switch)[found.data.test]) for fit in (known, found.final))
+    return after < min(BETTER * before, EXPLAINED)
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

@@ -15,17 +15,32 @@ STICKY = {"load_dependent_friction.coefficient": 0.05}
 EFFECT = Explanation(variants=(Variant("load_dependent_friction", ("coefficient",)),))
 
 
-def found(really, disturbed):
-    """What a search that has chosen `EFFECT` gives of a valve that `really` has these values."""
+DRIFT = Explanation(("armature_resistance",))
+
+
+def found(really, disturbed, explanation=EFFECT, values=STICKY):
+    """What a search that has chosen an explanation with these values gives of a valve that `really` has others."""
     data = replace(in_parts(data_on(recording(really))), disturbed=disturbed)
     estimator = Estimator(data, NOMINAL)
-    chosen = estimator.at(EFFECT, STICKY)
-    return SimpleNamespace(data=data, chosen=chosen, final=chosen, recalibrated=estimator.at(Explanation()))
+    chosen, nominal = estimator.at(explanation, values), estimator.at(Explanation())
+    fits = {Explanation(): nominal}
+    return SimpleNamespace(data=data, chosen=chosen, final=chosen, recalibrated=nominal, fits=fits)
 
 
 @pytest.mark.parametrize(("really", "confirmed"), [(STICKY, True), ({}, False)])
 def test_an_effect_beside_a_disturbance_has_to_lower_the_error_on_samples_that_test(really, confirmed):
     assert unseen_confirm(found(really, disturbed=True)) == confirmed
+
+
+def test_an_effect_beside_a_disturbance_has_to_leave_nothing_on_samples_that_test():
+    """What a wrong effect leaves: here that of a spring which is a little stiffer."""
+    assert not unseen_confirm(found({**STICKY, "spring_stiffness": 0.143}, disturbed=True))
+
+
+@pytest.mark.parametrize(("ohm", "confirmed"), [(4.1389, False), (4.4, True)])
+def test_a_parameter_beside_a_disturbance_that_is_off_by_next_to_nothing_has_not_drifted(ohm, confirmed):
+    drifted = {"armature_resistance": ohm}
+    assert unseen_confirm(found(drifted, True, DRIFT, drifted)) == confirmed
 
 
 def test_without_a_disturbance_the_search_has_decided():

@@ -12,6 +12,7 @@ from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
@@ -28,6 +29,8 @@ simulations; the right one of plain effects was among the first two."""
 CONFIRMED = 1.5
 """Error over noise that a wander may leave on samples that validate. Chosen: the true one left 1.01, 1.01 and, where a
 slip comes at another moment, 1.23; others, and those beside which physics was missing, 3.9 or more (about eleven)."""
+Attempt = tuple[Data, Beam | None]
+"""A recording with something set apart, and how far to search in it; None as far as always."""
 NOTHING = "nothing that acts elsewhere explains this stretch"
 """Why a stretch is left out."""
 
@@ -42,8 +45,8 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
         return found
     fits = _promising(found)
     for way in (_without_stretches, _beside_slow_quantities):
-        for tried in way(found, fits, recording, deadline, progress):
-            again = search(tried, found.nominal, progress, jobs, deadline=deadline)
+        for tried, beam in way(found, fits, recording, deadline, progress):
+            again = search(tried, found.nominal, progress, jobs, beam, deadline)
             if adequate(again.chosen):
                 return again
     return found
@@ -62,19 +65,28 @@ def _promising(found: Found) -> list[Fit]:
 
 def _without_stretches(
     found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
-) -> Iterator[Data]:
-    """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere."""
-    estimator = Estimator(found.data, found.nominal)
+) -> Iterator[Attempt]:
+    """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere.
+
+    Where none does, the first of them once more, for what a single quantity explains that the stretch has hidden.
+    """
+    estimator, others = Estimator(found.data, found.nominal), list[Data]()
     for fit in fits:
         deadline.check()
         progress(f"{fit.explanation.label}, but for one stretch")
-        if rest := without_stretch(found.data, estimator, fit, recording):
-            yield rest
+        if told := without_stretch(found.data, estimator, fit, recording):
+            rest, left = told
+            if left.ratio <= EXPLAINED:
+                yield rest, None
+            else:
+                others.append(rest)
+    for rest in others[:1]:
+        yield rest, Beam(depth=1)
 
 
 def _beside_slow_quantities(
     found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
-) -> Iterator[Data]:
+) -> Iterator[Attempt]:
     """The recording as if a quantity that wandered had been measured, beside which an explanation leaves nothing."""
     data, nominal = found.data, found.nominal
     estimator = Estimator(data, nominal)
@@ -86,7 +98,8 @@ def _beside_slow_quantities(
             if course.trained <= EXPLAINED and course.validated <= CONFIRMED:
                 known = slow.known(recording, course.course, course.values)
                 remark = f"{recording.name}: {slow.remark(course.course, course.values)}"
-                yield _said(in_parts(data_of([known], nominal)), data, remark, disturbed=True)
+                rest = _said(in_parts(data_of([known], nominal)), data, remark, disturbed=True)
+                yield course.kept_apart(rest), None
 
 
 def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Slow]:
@@ -98,8 +111,23 @@ def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Sl
     return found
 
 
-def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Data | None:
-    """The recording without the one stretch that holds the errors of an explanation, if it leaves nothing else."""
+def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Data | None:
+    """A single recording without the one stretch that the nominal model fails in, if that leaves nothing elsewhere.
+
+    None where it does, and where an actuator is simulated in stretches.
+    """
+    if len(recordings) > 1 or any(run.shooting is not None for run in data.runs):
+        return None
+    estimator = Estimator(data, nominal)
+    told = without_stretch(data, estimator, estimator.at(Explanation()), recordings[0])
+    return told[0] if told and adequate(told[1]) else None
+
+
+def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> tuple[Data, Fit] | None:
+    """The recording without the one stretch that holds nearly all errors of an explanation, None where they are spread.
+
+    With it the explanation fitted again.
+    """
     robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
     span = confined(data, data.residual(robust.model))
     if span is None:
@@ -107,10 +135,8 @@ def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recor
     omission = Omission(0, span, NOTHING)
     rest = in_parts(data_of([recording], estimator.nominal, (omission,)))
     left = Estimator(rest, estimator.nominal).fit(fit.explanation, robust.values, BRIEF)
-    if left.ratio > EXPLAINED:
-        return None
     remark = f"{recording.name}: from {span[0]:.3g} to {span[1]:.3g} s {NOTHING}; it is left out."
-    return _said(rest, data, remark, disturbed=False)
+    return _said(rest, data, remark, disturbed=False), left
 
 
 def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:

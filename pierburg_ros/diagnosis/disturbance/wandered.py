@@ -38,6 +38,14 @@ class Wandered:
     trained: float
     validated: float
 
+    def kept_apart(self, data: Data) -> Data:
+        """`data` in which what the course leaves counts as noise, and as much of the evidence as it could give is none.
+
+        No course through a few knots is exact, and a quantity that is off by a little would be found to drift.
+        """
+        left = max(self.trained, self.validated, 1.0)
+        return data.kept_apart(data.noise * float(np.sqrt(left**2 - 1.0)))
+
 
 def wandered(data: Data, fit: Fit, slow: Slow, estimator: Estimator) -> Wandered:
     """The quantity's course beside the explanation of `fit`, both fitted to the training samples.

@@ -17,14 +17,14 @@ MOST = 0.95
 """Share of all errors beyond the noise that a stretch must hold where it cannot hold all. Chosen: the rest is a slip
 that comes at another moment; not varied."""
 LONGEST = 0.25
-"""Longest stretch, as a share of the recording. Chosen: 15 s of a minute, five seconds and the time until the duty has
-moved the shaft back; not varied."""
+"""Longest stretch, as a share of the recording and of the motion in it. Chosen: 15 s of a minute, five seconds and the
+time until the duty has moved the shaft back; not varied."""
 
 
 def confined(data: Data, residual: Signal) -> Span | None:
     """The one stretch [s] of a recording that holds nearly all errors of a `residual` [noise], shape (samples,).
 
-    None where errors are spread, or there are none.
+    None where errors are spread over time or over the motion, or there are none.
     """
     time = np.concatenate([run.time for run in data.runs])
     number = np.floor((time - time[0]) / (BLOCK * data.scales.time)).astype(int)
@@ -33,13 +33,23 @@ def confined(data: Data, residual: Signal) -> Span | None:
     beyond = np.where(error > HIGH**2, error - 1.0, 0.0)
     if not np.any(beyond):
         return None
+    moved = _moved(data, number)
     for share in (1.0, MOST):
         first, last = _grown(error > HIGH**2, *_shortest(beyond, share))
         start, end = (float(time[0]) + BLOCK * data.scales.time * place for place in (first - 1, last + 2))
         start, end = max(start, float(time[0])), min(end, float(time[-1]))
-        if end - start <= LONGEST * (time[-1] - time[0]):
+        if end - start <= LONGEST * (time[-1] - time[0]) and moved[first : last + 1].sum() <= LONGEST * moved.sum():
             return start, end
     return None
+
+
+def _moved(data: Data, number: np.ndarray) -> Signal:
+    """How far the measured value goes in each block, shape (blocks,); `number` is that of each sample's block."""
+    measured = np.concatenate([run.measured for run in data.runs])
+    highest, lowest = np.full(number[-1] + 1, -np.inf), np.full(number[-1] + 1, np.inf)
+    np.maximum.at(highest, number, measured)
+    np.minimum.at(lowest, number, measured)
+    return np.where(highest >= lowest, highest - lowest, 0.0)
 
 
 def _grown(high: Flags, first: int, last: int) -> tuple[int, int]:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.disturbance.apart import NOTHING, slow_quantities, without_stretch
+from pierburg_ros.diagnosis.disturbance.apart import NOTHING, nominal_elsewhere, slow_quantities, without_stretch
 from pierburg_ros.diagnosis.disturbance.course import Course
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Supply, Zero
-from pierburg_ros.diagnosis.disturbance.wandered import wandered
+from pierburg_ros.diagnosis.disturbance.wandered import Wandered, wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
@@ -44,11 +44,11 @@ def test_seconds_of_an_open_bridge_are_left_out():
     given = driven(enabled=(time < 9.0) | (time >= 12.0))
     data, estimator, fit = fitted_to(given)
     assert fit.ratio > 10.0
-    rest = without_stretch(data, estimator, fit, given)
+    rest, left = without_stretch(data, estimator, fit, given)
     (omission,) = rest.left_out
     start, end = omission.span
     assert omission.why == NOTHING and 8.0 < start < 9.5 and 11.5 < end < 14.5
-    assert Estimator(rest, NOMINAL).at(Explanation()).ratio < EXPLAINED
+    assert left.ratio < EXPLAINED
     assert len(rest.runs) == 2 and not any(np.any((r.time > start) & (r.time < end)) for r in rest.runs)
 
 
@@ -120,3 +120,33 @@ def test_only_a_supply_that_was_not_recorded_may_have_wandered():
     logged = replace(ONE, supply_voltage=Channel(ONE.time[:1], np.array([13.5])))
     assert [type(each) for each in slow_quantities(ONE, data, NOMINAL)] == [Zero, Supply]
     assert [type(each) for each in slow_quantities(logged, data, NOMINAL)] == [Zero]
+
+
+def test_what_a_course_leaves_is_no_evidence():
+    """An error of 1.25 noises where 1 is the sensor's: 0.75 of the noise moves whole stretches."""
+    data = data_on(ONE)
+    course = Course.over(0.0, 24.0, data.scales.time)
+    kept = Wandered(course, np.zeros(course.knots.size), 1.0, 1.25).kept_apart(data)
+    assert kept.noise == pytest.approx(1.25 * data.noise) and kept.unlike == pytest.approx(0.75 * data.noise)
+    assert Wandered(course, np.zeros(course.knots.size), 0.99, 0.98).kept_apart(data) == data
+
+
+def test_a_stretch_with_most_of_the_motion_is_not_left_out():
+    """A valve that stands still but for five seconds: whatever is wrong with it shows in these."""
+    time = inputs_of(ONE).time
+    still = Channel(time, np.where((time > 10.0) & (time < 15.0), inputs_of(ONE).command, -0.1))
+    true = NOMINAL.with_values({"coulomb_friction": 0.25})
+    moved = simulate(true, inputs_of(replace(ONE, command=still)), ONE.time) + NOISES
+    given = replace(ONE, measured=moved, command=still)
+    data, _, fit = fitted_to(given)
+    assert fit.ratio > EXPLAINED and nominal_elsewhere(data, NOMINAL, [given]) is None
+
+
+def test_where_the_nominal_model_explains_the_rest_one_stretch_is_left_out_at_once():
+    time = inputs_of(ONE).time
+    given = driven(enabled=(time < 9.0) | (time >= 12.0))
+    data, _, _ = fitted_to(given)
+    assert nominal_elsewhere(data, NOMINAL, [given]).left_out[0].why == NOTHING
+    assert nominal_elsewhere(data, NOMINAL, [given, given]) is None
+    stiff = replace(given, measured=given.measured + 0.1 * (given.measured - 2.0))
+    assert nominal_elsewhere(data_on(stiff), NOMINAL, [stiff]) is None
