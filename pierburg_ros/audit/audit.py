@@ -70,11 +70,12 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
     if (unmoved := still(signals, nominal)) is not None:
         return unmoved
     found = followed(signals, given, nominal) or closed_loop(signals, given, slips(signals, nominal), nominal)
+    timed = Signals.of(recording, TIMED)
+    if not found and given is not None:
+        found = wandering(timed, signals, given, nominal)
     if not found and given is not None and given.suffices:
-        timed = Signals.of(recording, TIMED)
         found = (
-            wandering(timed, signals, given, nominal)
-            or early(timed, given)
+            early(timed, given)
             or plainer(tuple(exchanged(signals)), signals, given, nominal)
             or rescaled(signals, given, nominal)
         )

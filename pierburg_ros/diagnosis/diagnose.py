@@ -34,6 +34,10 @@ from pierburg_ros.estimation.turn import has_overtones
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
+APART = 0.5
+"""Share of the time left after a search in which disturbances are looked for. Work: the rest is for what remains, which
+names effects that stand beside it; not varied."""
+
 
 def diagnose(
     recordings: Sequence[Recording],
@@ -104,8 +108,8 @@ def examined(
             return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
         return replace(found, data=doubt.said(found.data, unsettled=True)), unnamed(found)
     if single and not turning:
-        tell = staged(progress, "disturbances")
-        found = deadline.attempt(partial(apart, found, recordings[0], tell, jobs, deadline), found)
+        tell, time = staged(progress, "disturbances"), deadline.part(APART)
+        found = time.attempt(partial(apart, found, recordings[0], tell, jobs, time), found)
         if verdict_on(found.chosen) != "unexplained":
             return found, None if unseen_confirm(found) else unexamined(found)
     tell = staged(progress, "what remains")
