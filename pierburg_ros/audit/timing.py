@@ -85,7 +85,7 @@ def wandering(signals: Signals, part: Signals, given: Explained, nominal: Model)
 
 
 def _rates(signals: Signals) -> Signal:
-    """By how much of each second the inputs are moved later, 0 first: so that any drift up to `FARTHEST` stays in sight.
+    """By how much of each second the inputs are moved later, 0 first, so that any drift to `FARTHEST` stays in sight.
 
     From one to the next the lag at the end changes by the `BESIDE` samples that are looked at to either side.
     """

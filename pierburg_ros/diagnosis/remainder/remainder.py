@@ -15,7 +15,7 @@ from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.diagnosis.search.supported import Supported, Weight, supported, told_apart, with_play
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -105,7 +105,9 @@ def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None
     A play is read from the samples themselves: it needs none of the others.
     """
     data, nominal = found.data, found.nominal
-    beside = found.beside or supported(data, nominal, pool, progress)
+    nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
+    added = found.beside or supported(data, nominal, pool, progress)
+    beside = likelier(added, nearest, data, nominal, pool)
     named = _undoubted(told_apart(beside.confirmed, data, nominal, pool, progress), found)
     bare = named or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
     both = with_play(bare, beside.reached.fit, data, nominal)

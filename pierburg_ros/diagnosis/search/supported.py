@@ -138,6 +138,18 @@ def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) ->
     return Beside(reached, begun, _without(weighed, _unconfirmed, data, nominal, pool))
 
 
+def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executor) -> Beside:
+    """`beside`, or the same of a `fit` that makes the recordings likelier by as much as names a quantity.
+
+    Quantities that are added one by one may miss what a search has found together.
+    """
+    reached = settled(data, nominal, fit)
+    if beside.reached.cost - reached.cost < SIGNIFICANT:
+        return beside
+    weighed = _weighed(data, nominal, reached, pool)
+    return Beside(reached, beside.begun, _without(weighed, _unconfirmed, data, nominal, pool))
+
+
 def told_apart(named: Supported, data: Data, nominal: Model, pool: Executor, progress: Progress) -> Supported:
     """What of `named` may be named, each effect with what could stand in its place.
 

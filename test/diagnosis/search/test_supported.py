@@ -7,7 +7,15 @@ import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.scored import scored, settled
-from pierburg_ros.diagnosis.search.supported import CONFIRMED, Beside, Supported, Weight, supported, told_apart
+from pierburg_ros.diagnosis.search.supported import (
+    CONFIRMED,
+    Beside,
+    Supported,
+    Weight,
+    likelier,
+    supported,
+    told_apart,
+)
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -48,6 +56,20 @@ def test_an_effect_is_named_beside_what_no_effect_makes():
 
 def test_nothing_is_named_where_only_that_is_there():
     assert found_in({}, seed=1) is None
+
+
+def test_what_a_search_has_found_is_heard_where_it_is_likelier():
+    """Nothing was added one by one; the search has the delay, or a parameter that gains next to nothing."""
+    data = data_on(disturbed({"input_delay.delay": 0.02}, 0))
+    estimator = Estimator(data, NOMINAL)
+    nominal = scored(data, estimator.at(Explanation()))
+    nothing = Beside(nominal, nominal.left, Supported(NOMINAL, nominal, {}))
+    late = estimator.fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
+    other = estimator.fit(Explanation(("supply_voltage",)))
+    with workers(1) as pool:
+        heard = likelier(nothing, late, data, NOMINAL, pool)
+        assert likelier(nothing, other, data, NOMINAL, pool) is nothing
+    assert set(heard.confirmed.weights) == {DELAY} and heard.begun == nothing.begun
 
 
 def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
