@@ -362,8 +362,7 @@ What is not found is mostly tied:
   times as much of the motion as the whole (n = 8). It shows only as an answer half an interval early, as in clean runs.
 - A sensor that is off without ever reading beyond a stop equals drifts.
 - A clock is told where the lag grows, no one lag does for all parts, and no delay explains the motion as well. Slow
-  motions correlate at any lag: a servo's run of 5 s does not tell 1 %. Nor is a drift of more than 75 samples told: 1 %
-  of a minute is 0.6 s.
+  motions correlate at any lag: a servo's run of 5 s does not tell 1 %. A clock off by more than 2 % is not looked for.
 
 Two actuators as one are told by what one set of numbers loses beside their own. On recordings that had no part in the
 choice of that limit, 20 of 24 pairs of different valves are found, and none of 21 pairs of one valve with an effect is

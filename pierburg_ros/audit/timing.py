@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import theilslopes
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.explained import BESIDE, Explained, Fit, correlated, explained
@@ -62,14 +63,15 @@ def wandering(signals: Signals, part: Signals, given: Explained, nominal: Model)
     seen = lags[:, 1] >= SEEN
     if np.count_nonzero(seen) < TOLD or _common(by_rate[0][seen]) > PLAINLY * float(np.mean(lags[seen, 1])):
         return None
-    middle = np.array([signals.time[int(np.median(each))] for each in _parts(signals.time.size)])[seen]
-    slope, begin = np.polyfit(middle, signals.interval * lags[seen, 0], 1, w=lags[seen, 1])
-    off = float(np.max(np.abs(signals.interval * lags[seen, 0] - begin - slope * middle)))
-    slope += rates[best]
+    middle = np.array([signals.time[int(np.median(each))] for each in _parts(signals.time.size)])
+    late = signals.interval * lags[:, 0] + rates[best] * middle
+    slope, begin, *_ = theilslopes(late[seen], middle[seen])
     drift = abs(slope) * signals.duration
-    if drift < DRIFTS * signals.interval or off > EARLY * signals.interval + STRAIGHT * drift:
+    told = seen & (np.abs(late - begin - slope * middle) <= EARLY * signals.interval + STRAIGHT * drift)
+    if drift < DRIFTS * signals.interval or np.count_nonzero(told) < TOLD:
         return None
-    steady = float(np.average(begin + slope * middle, weights=lags[seen, 1]))
+    slope, begin = np.polyfit(middle[told], late[told], 1, w=lags[told, 1])
+    steady = float(np.average(late[told], weights=lags[told, 1]))
     alike = min(given.cost, explained(part.delayed(steady), nominal).cost)
     undone = explained(part.late_by(begin, slope), nominal)
     if undone.cost > UNDONE * alike or not undone.suffices:
@@ -78,7 +80,7 @@ def wandering(signals: Signals, part: Signals, given: Explained, nominal: Model)
     first, last = (1e3 * (begin + slope * at) for at in (signals.time[0], signals.time[-1]))
     evidence = (
         f"The shaft answers the {signals.input} {first:.3g} ms late at the beginning and {last:.3g} ms late at the end,"
-        f" told in {np.count_nonzero(seen)} of {PARTS} parts; what comes before its cause is negative."
+        f" told in {np.count_nonzero(told)} of {PARTS} parts; what comes before its cause is negative."
     )
     mend = f"stamp {signals.input} and {signals.quantity} by one clock: choose it with --time stamp, publish or log"
     return Fault(signals.name, signals.input, f"clock {100.0 * share:.2g} % {way}", evidence, mend)

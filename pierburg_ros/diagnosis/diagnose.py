@@ -17,7 +17,7 @@ from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
 from pierburg_ros.diagnosis.report.exhibits import exhibits
-from pierburg_ros.diagnosis.report.findings import document, longest, signals
+from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import Found, search
@@ -76,7 +76,7 @@ def diagnose(
     )
     excluded = limits(found, conclusion.final, progress, jobs, deadline)
     written = document(found, conclusion, parts, excluded, deadline.stopped)
-    shown = signals(longest(found.data), conclusion)
+    shown = signals(found.data.longest, conclusion)
     result = Result(written, conclusion.model, found.data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result
 

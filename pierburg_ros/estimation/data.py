@@ -95,6 +95,12 @@ class Data:
         return np.clip(whole, -WILD, WILD)
 
     @property
+    def longest(self) -> Run:
+        """The longest run of the first recording: all of it, unless messages are missing."""
+        first = self.runs[0].number
+        return max((run for run in self.runs if run.number == first), key=lambda run: run.time.size)
+
+    @property
     def scales(self) -> Scales:
         """What is large for the actuator."""
         return self.actuator.scales

@@ -190,8 +190,8 @@ def _prior(angles: int, velocities: int) -> Signal:
 
 
 def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
-    """Middle of each stretch of the first run [s] and the mean torque missing there [N.m], nan where at rest."""
-    run = data.runs[0]
+    """Middle of each stretch of the longest run [s] and the mean torque missing there [N.m], nan where at rest."""
+    run = data.longest
     missing, own = missing_torque(data, run, model), data.scales
     edges = np.linspace(run.time[0], run.time[-1], STRETCHES + 1)
     place = np.clip(np.searchsorted(edges, own.time * missing.time, side="right") - 1, 0, STRETCHES - 1)

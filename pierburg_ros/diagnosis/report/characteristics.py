@@ -49,7 +49,7 @@ def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristi
         "recalibrated": conclusion.recalibrated.model,
         "final": conclusion.model,
     }
-    run, own = found.data.runs[0], found.data.scales
+    run, own = found.data.longest, found.data.scales
     missing = missing_torque(found.data, run, conclusion.model)
     lacking = Lacking(missing.angle * own.angle, missing.velocity * own.angle / own.time, missing.torque * own.torque)
     motion = motion_of(run, found.data.actuator, found.data.noise)

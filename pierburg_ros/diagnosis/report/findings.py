@@ -248,7 +248,7 @@ def remaining(data: Data, conclusion: Conclusion, parts: Shares) -> Remaining:
     """What the written model leaves of the first recording, as a share and in words."""
     residual = data.residual(conclusion.model, conclusion.final.switch)
     discrepancy = Kalman(data, data.train).most_likely(residual)
-    run = longest(data)
+    run = data.longest
     left = run.measured - run.simulated(conclusion.model, conclusion.final.switch)
     return Remaining(share=parts.remains, looks_like=resemblance(data, run, left, discrepancy))
 
@@ -275,7 +275,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
     """
     if conclusion.verdict in ("consistent", "parameter_drift"):
         return [], []
-    run, final = longest(data), conclusion.final
+    run, final = data.longest, conclusion.final
     motion = motion_of(run, data.actuator, data.noise)
     residual = run.measured - run.simulated(conclusion.recalibrated.model)
     mark = residual
@@ -284,11 +284,6 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
         mark = run.simulated(final.model, final.switch) - run.simulated(bare)
     found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
     return locations(motion, residual, found), regimes(motion, residual)
-
-
-def longest(data: Data) -> Run:
-    """The longest run of the first recording: all of it, unless messages are missing."""
-    return max((run for run in data.runs if run.number == 0), key=lambda run: run.time.size)
 
 
 def residual_torque(shape: Shape | None) -> ResidualTorque | None:

@@ -28,7 +28,7 @@ def possible(actuator: Actuator) -> tuple[Effect, ...]:
 
 def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
     """Starting values by variant on top of `model`: some are read from the torque that it misses."""
-    missing = missing_torque(data, data.runs[0], model)
+    missing = missing_torque(data, data.longest, model)
     found: dict[Variant, list[Start]] = {}
     for effect in possible(data.actuator):
         for variant in effect.variants:

@@ -63,6 +63,8 @@ def through_stretches(
     own = estimator.data.scales.time
     short, *longer = (Estimator(restarted(estimator.data, length * own), estimator.nominal) for length in LENGTHS)
     start = _scanned(estimator, short, variant, ripple, *min(grown, key=lambda pair: pair[1].chi2), pool)
+    if start is None:
+        return []
 
     def descended(pair: tuple[Explanation, Fit]) -> Fit:
         return short.fit(pair[0], {**pair[1].values, **start}, BRIEF, held=held)
@@ -87,12 +89,12 @@ def _scanned(
     explanation: Explanation,
     base: Fit,
     pool: Executor,
-) -> dict[str, float]:
-    """The ripple that leaves least over the shortest stretches on top of `base`."""
-    missing = missing_torque(estimator.data, estimator.data.runs[0], base.model)
+) -> dict[str, float] | None:
+    """The ripple that leaves least over the shortest stretches on top of `base`, None where nothing has a rhythm."""
+    missing = missing_torque(estimator.data, estimator.data.longest, base.model)
     effect, scales = EFFECT[variant.effect], base.model.scales
     rows = itertools.product(AMPLITUDES, dict.fromkeys(ripple.rhythms(missing)), PHASES)
     own = (effect.in_units(dict(zip(variant.free, row, strict=True)), scales) for row in rows)
     starts = [{f"{variant.effect}.{name}": value for name, value in start.items()} for start in own]
     costs = pool.map(lambda start: short.chi2_at(explanation, {**base.values, **start}), starts)
-    return min(zip(costs, starts, strict=True), key=lambda pair: pair[0])[1]
+    return min(zip(costs, starts, strict=True), key=lambda pair: pair[0], default=(math.inf, None))[1]

@@ -88,3 +88,9 @@ def test_heat_and_what_changes_midway_are_left_out() -> None:
     base = estimator.fit(Explanation())
     with ThreadPoolExecutor(2) as pool:
         assert through_stretches(estimator, *OVER_ANGLE, {heat: base, change: base}, pool) == []
+
+
+def test_a_shaft_that_stands_still_has_no_rhythm() -> None:
+    estimator = Estimator(data_on(recording({}, duties=(-0.05, -0.05))), NOMINAL)
+    with ThreadPoolExecutor(2) as pool:
+        assert through_stretches(estimator, *OVER_ANGLE, {SUPPLY.plus(COGGING): estimator.at(SUPPLY)}, pool) == []
