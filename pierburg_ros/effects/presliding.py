@@ -81,9 +81,11 @@ def moved(p, bristle, before, after, travel):
     that of the mean level. However short it is beside the travel, they end behind the level by what it changes in it.
     """
     level = 0.5 * (before + after)
-    if level <= 0.0 or travel == 0.0:
+    if level <= 0.0:
         return bristle if travel == 0.0 else 0.0
     reach = abs(travel) * p.stiffness / level
+    if reach == 0.0:
+        return bristle
     first, last = math.copysign(before / p.stiffness, travel), math.copysign(after / p.stiffness, travel)
     faded = math.expm1(-reach)
     return last + (bristle - first) * (1.0 + faded) + (last - first) * faded / reach

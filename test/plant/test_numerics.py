@@ -7,6 +7,7 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.comparison.compare import compare
+from pierburg_ros.effects import presliding
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate, simulate_many
 from pierburg_ros.plant.signal_path import BURST, SUSTAINED
@@ -82,6 +83,13 @@ def test_a_step_that_leads_beyond_all_numbers_is_taken_shorter():
     for angle in np.linspace(0.1, 1.4, 8):
         output = simulate(NOMINAL.with_values(hill), STEPS, TIME[:50], angle)
         assert np.all((output >= 0.42) & (output <= 4.52))
+
+
+def test_the_shortest_way_that_there_is_leaves_bristles_as_they_lean():
+    """As a pendulum without friction goes that comes to hang: its way over the reach of the bristles is 0."""
+    bristles = NOMINAL.with_values({"presliding.stiffness": 21.0}).record()[0]["presliding"]
+    assert presliding.moved(bristles, 0.0014, 90.0, 90.0, 1e-323) == 0.0014
+    assert presliding.moved(bristles, 0.0014, 90.0, 80.0, 1e-323) == 0.0014
 
 
 def test_a_tight_spot_as_narrow_as_one_likes_is_crossed():

@@ -26,8 +26,9 @@ STRIDE = 0.25
 """Share of the Stribeck velocity in which the friction's fall turns once at most."""
 FADED = 3.0
 """Multiple of the Stribeck velocity at which the friction above the sliding one has faded to 1e-4 of it."""
-DOUBLINGS, HALVINGS = 200, 60
-"""Most steps of a search, first outwards, then between two velocities by secants, whose far end loses half its say."""
+DOUBLINGS, HALVINGS = 50, 60
+"""Most steps of a search, first outwards, then between two velocities by secants, whose far end loses half its say.
+Work: fifty doublings go 1e15 strides out, beyond which rounding hides a stride; with 200 a set took over 100 s."""
 
 
 @kernel
