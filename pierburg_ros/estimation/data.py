@@ -58,8 +58,8 @@ class Data:
     tells nothing of the actuator; `warnings` is what to say first of recordings that lack messages, `remarks` of those
     that are dirty.
     `disturbed`: a quantity that was not measured is taken to have wandered. `unlike` is how much of the noise moves
-    whole stretches and not single samples [measured unit, root mean square], so that as much is no evidence: stamps of
-    the input that are off, and what is `kept_apart`.
+    whole stretches and not single samples [measured unit, root mean square], so that as much is no evidence: missing
+    messages of the duty, stamps that are off, and what is `kept_apart`.
     """
 
     actuator: Actuator
@@ -168,9 +168,8 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
     finest, _ = DECLARED[STEP].expected(model.scales)
     step = coarse_step([run.measured for run in runs], noise, finest)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
-    return Data(model.actuator, runs, math.hypot(noise, lost), step, noise, (*unknown, *without), warnings).kept_apart(
-        stamped
-    )
+    whole = Data(model.actuator, runs, noise, step, noise, (*unknown, *without), warnings)
+    return whole.kept_apart(math.hypot(lost, stamped))
 
 
 def in_parts(data: Data) -> Data:
