@@ -95,6 +95,11 @@ class Data:
         return np.clip(whole, -WILD, WILD)
 
     @property
+    def in_stretches(self) -> bool:
+        """Whether a simulation begins again and again, since the actuator does not forget how it began."""
+        return any(run.shooting is not None for run in self.runs)
+
+    @property
     def longest(self) -> Run:
         """The longest run of the first recording: all of it, unless messages are missing."""
         first = self.runs[0].number

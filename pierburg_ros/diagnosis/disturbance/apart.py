@@ -41,7 +41,7 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
     Physics comes first: it is asked only after a search that left something. `recording` is the one it was made on.
     Simulated in stretches that each begin anew, an actuator forgets a disturbance by itself, and none is told.
     """
-    if any(run.shooting is not None for run in found.data.runs):
+    if found.data.in_stretches:
         return found
     fits = _promising(found)
     for way in (_without_stretches, _beside_slow_quantities):
@@ -116,7 +116,7 @@ def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording
 
     None where it does, and where an actuator is simulated in stretches.
     """
-    if len(recordings) > 1 or any(run.shooting is not None for run in data.runs):
+    if len(recordings) > 1 or data.in_stretches:
         return None
     estimator = Estimator(data, nominal)
     told = without_stretch(data, estimator, estimator.at(Explanation()), recordings[0])

@@ -28,7 +28,7 @@ def in_stretches(data: Data, length: float) -> Data:
 
     They do where nothing makes an actuator forget how it began: there so long a stretch may end anywhere.
     """
-    return data if any(run.shooting for run in data.runs) else restarted(data, length)
+    return data if data.in_stretches else restarted(data, length)
 
 
 def restarted(data: Data, length: float) -> Data:

@@ -126,7 +126,7 @@ def _doubtful(stood: Supported, found: Found) -> bool:
     them beside all that was recalibrated. What was read from the samples themselves, without a free number, stands on
     no simulation.
     """
-    if not (stood.scored.fit.explanation.names and any(run.shooting for run in found.data.runs)):
+    if not (stood.scored.fit.explanation.names and found.data.in_stretches):
         return False
     estimator, named, known = Estimator(found.data, stood.nominal), stood.scored.fit, found.recalibrated
     most = BETTER**2 * found.estimator.validation_misfit(known)
