@@ -165,7 +165,11 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
         raise InputError("The recordings hold Hall voltage and position; expected one quantity. Fit them one by one.")
     spans = [tuple(each.span for each in without if each.number == number) for number in range(len(recordings))]
     cut = [parts_of(recording, model, out) for recording, out in zip(recordings, spans, strict=True)]
-    runs = tuple(run_of(part, model, number) for number, (parts, _) in enumerate(cut) for part in parts)
+    runs = tuple(
+        run_of(part, model, number, whole)
+        for number, (whole, (parts, _)) in enumerate(zip(recordings, cut, strict=True))
+        for part in parts
+    )
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
     stamped = float(np.median([stamp_noise(run.time, run.measured, noise) for run in runs]))

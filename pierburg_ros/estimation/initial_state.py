@@ -48,7 +48,8 @@ class InitialState:
     """What the first samples of a recording say: level, rate [1/s], curvature [1/s^2] and noise, in the measured unit.
 
     It is `known` where the shaft stands still or creeps. `angle` [rad] is what else is known of the angle where the
-    speed is measured; else the shaft is taken to begin where its load lets it rest.
+    speed is measured; else the shaft is taken to begin where its load lets it rest. Before, the measured value `came`
+    rising (+1) or falling (-1); 0 where that is not known.
     """
 
     level: float
@@ -57,10 +58,14 @@ class InitialState:
     known: bool
     angle: float = math.nan
     curvature: float = 0.0
+    came: float = 0.0
 
     @staticmethod
-    def of(time: Signal, measured: Signal) -> InitialState:
-        """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once."""
+    def of(time: Signal, measured: Signal, before: Signal | None = None) -> InitialState:
+        """Mean of the samples before the first movement, or a line where the shaft creeps or moves at once.
+
+        `before` is what was measured until then, if anything.
+        """
         noise = noise_of(time, measured)
         length = _stays(measured[:LONGEST], noise)
         even = bool(_even(_windows(measured[:EVEN]), BRISK * noise, noise).any())
@@ -70,13 +75,15 @@ class InitialState:
         length = min(max(length, EVEN if even else FEWEST if known else SHORTEST), measured.size)
         elapsed, first = time[:length] - time[0], measured[:length]
         if known and not _slopes(elapsed, first, noise):
-            return InitialState(float(np.mean(first)), 0.0, noise, known)
+            level = float(np.mean(first))
+            return InitialState(level, 0.0, noise, known, came=approach(before, level, noise))
         rate, level = np.polyfit(elapsed, first, 1)
         return InitialState(float(level), float(rate), noise, known)
 
-    def state(self, model: Model, quantity: str) -> tuple[float, float, float]:
+    def state(self, model: Model, quantity: str) -> tuple[float, float, float, float]:
         """Angle [rad], velocity [rad/s] and acceleration [rad/s^2] at the first sample, which matter to a slow sensor.
 
+        And whether it came opening (+1) or closing (-1), which matters to one with play; 0 where it is not known.
         Exactly on a stop where noise allows it.
         """
         if quantity == "speed":
@@ -86,22 +93,23 @@ class InitialState:
         margin = 3.0 * self.noise / abs(per_radian)
         lower, upper = model.actuator.lower_stop, model.actuator.upper_stop
         if angle <= lower + margin:
-            return lower, 0.0, 0.0
+            return lower, 0.0, 0.0, 0.0
         if angle >= upper - margin:
-            return upper, 0.0, 0.0
-        if self.rate == 0.0:
-            return angle, 0.0, 0.0
+            return upper, 0.0, 0.0, 0.0
         lag, play = trail(model)
+        if self.rate == 0.0:
+            came = self.came * float(np.sign(per_radian))
+            return angle + 0.5 * play * came, 0.0, 0.0, came
         shown, acceleration = self.rate / per_radian, self.curvature / per_radian
         velocity = shown + lag * acceleration
-        return angle + lag * shown + 0.5 * play * float(np.sign(velocity)), velocity, acceleration
+        return angle + lag * shown + 0.5 * play * float(np.sign(velocity)), velocity, acceleration, 0.0
 
-    def _turning(self, model: Model) -> tuple[float, float, float]:
+    def _turning(self, model: Model) -> tuple[float, float, float, float]:
         """The same where the speed is measured; at rest where noise allows it."""
         angle = rest_angle(model) if math.isnan(self.angle) else self.angle
         velocity = decoded_value(model, self.level, "speed")
         margin = 3.0 * self.noise * abs(angle_per_unit(model))
-        return angle, 0.0 if abs(velocity) <= margin else velocity, 0.0
+        return angle, 0.0 if abs(velocity) <= margin else velocity, 0.0, 0.0
 
 
 def rest_angle(model: Model) -> float:
@@ -139,13 +147,22 @@ def first_standstill(measured: Signal, noise: float) -> int | None:
 def first_rest(measured: Signal, noise: float) -> int | None:
     """The first sample of `measured` from which the shaft stands still and no longer creeps; None where there is none.
 
-    It rests where the means of two successive stretches of `EVEN` samples differ by no more than their noise.
+    It rests where the means of two successive stretches of `EVEN` samples differ by no more than their noise: from the
+    second one, for the first may hold the end of the movement.
     """
     sample = first_standstill(measured, noise)
     if sample is None:
         return None
     rests = _keeps_place(measured[sample:], 2.0 * noise)
-    return sample + EVEN * int(np.argmax(rests)) if rests.any() else None
+    return sample + EVEN * (int(np.argmax(rests)) + 1) if rests.any() else None
+
+
+def approach(before: Signal | None, level: float, noise: float) -> float:
+    """Whether what was measured `before` a rest at a `level` rose (+1) or fell (-1) to it; 0 where that is not seen."""
+    if before is None:
+        return 0.0
+    elsewhere = before[np.abs(before - level) > SLOW * noise]
+    return float(np.sign(level - elsewhere[-1])) if elsewhere.size else 0.0
 
 
 def rests_of(measured: Signal, noise: float) -> list[slice]:

@@ -2,7 +2,7 @@
 
 Dry friction lets the shaft rest anywhere, so the cost of a whole recording is rough: one slip that comes early moves
 all that follows. Where the shaft rests its state is known but for the noise, so that each part may begin there
-(multiple shooting: Bock, Plitt, IFAC Proceedings 17 (1984) 1603-1608). What a model else remembers, heat or play,
+(multiple shooting: Bock, Plitt, IFAC Proceedings 17 (1984) 1603-1608). What a model else remembers, such as heat,
 starts afresh: the values so found are where a fit to whole recordings begins.
 """
 
@@ -14,8 +14,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.initial_state import InitialState, rests_of
+from pierburg_ros.estimation.initial_state import InitialState, approach, rests_of
 from pierburg_ros.estimation.run import Run
 
 
@@ -27,8 +28,12 @@ def cut_at_rests(data: Data) -> Data:
 def _parts(run: Run) -> Iterator[Run]:
     noise = run.start.noise
     rests = [] if run.shooting else [rest for rest in rests_of(run.measured, noise) if rest.start > 0]
-    levels = (float(np.mean(run.measured[rest])) for rest in rests)
-    starts = [run.start, *(InitialState(level, 0.0, noise, True) for level in levels)]
+    starts = [run.start, *(_start(run.measured, rest, noise) for rest in rests)]
     edges = [0, *((rest.start + rest.stop) // 2 for rest in rests), run.time.size]
     for start, (first, last) in zip(starts, pairwise(edges), strict=True):
         yield replace(run.part(slice(first, last)), start=start)
+
+
+def _start(measured: Signal, rest: slice, noise: float) -> InitialState:
+    level = float(np.mean(measured[rest]))
+    return InitialState(level, 0.0, noise, True, came=approach(measured[: rest.start], level, noise))

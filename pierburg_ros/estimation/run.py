@@ -129,9 +129,12 @@ def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
             yield replace(part, time=part.time[sample:], measured=part.measured[sample:])
 
 
-def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
-    """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit."""
-    actuator = model.actuator
+def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording | None = None) -> Run:
+    """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit.
+
+    It may be a part of a `whole` one, which says how the shaft came to where it stands.
+    """
+    actuator, whole = model.actuator, whole or recording
     if recording.input != actuator.input:
         raise InputError(
             f"{recording.name} holds a {recording.input} and actuator {actuator.name} is driven by a {actuator.input};"
@@ -154,7 +157,8 @@ def run_of(recording: Recording, model: Model, number: int = 0) -> Run:
     else:
         length = stretch_length(recording.time, recording.measured, recording.quantity)
         shooting = Shooting.of(recording.time, recording.measured, length)
-    start = InitialState.of(recording.time, recording.measured)
+    before = whole.measured[whole.time < recording.time[0]]
+    start = InitialState.of(recording.time, recording.measured, before)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
     inputs, lag = inputs_in_force(recording, start, model), 0.0
     if shooting is not None and goes_round(model, recording.measured, recording.quantity):
@@ -208,7 +212,7 @@ def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
     InputError where it cannot be simulated.
     """
     parts, _ = parts_of(recording, Model.nominal(model.actuator))
-    simulated = np.concatenate([run_of(part, model).simulated(model) for part in parts])
+    simulated = np.concatenate([run_of(part, model, whole=recording).simulated(model) for part in parts])
     time, measured = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "measured"))
     refuse_unsimulated(model, simulated, time)
     return replace(parts[0], time=time, measured=measured), simulated

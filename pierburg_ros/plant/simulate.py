@@ -13,6 +13,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
+from pierburg_ros.plant.motion.events import settle
 from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
@@ -67,17 +68,18 @@ def simulate(
     initial_angle: float = 0.0,
     initial_velocity: float = 0.0,
     initial_acceleration: float = 0.0,
+    came: float = 0.0,
 ) -> Signal:
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
     No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s], a sensor
-    with a lag as after an even `initial_acceleration` [rad/s^2]. Loads go by the time of the samples, and a command
-    from before the first one is under way. Not a number from where a parameter
-    set cannot be simulated.
+    with a lag as after an even `initial_acceleration` [rad/s^2], one with play as after motion that `came` opening (+1)
+    or closing (-1) where the shaft stands. Loads go by the time of the samples, and a command from before the first
+    one is under way. Not a number from where a parameter set cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
-    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration)
+    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration, came)
     return output
 
 
@@ -111,12 +113,13 @@ def simulate_switched(
     initial_angle: float = 0.0,
     initial_velocity: float = 0.0,
     initial_acceleration: float = 0.0,
+    came: float = 0.0,
 ) -> Signal:
     """`simulate` of `model`, with `after` taking over the running state at `switch_time` [s]."""
     times = _increasing(sample_times)
     output = np.empty(times.size)
     split = int(np.searchsorted(times, switch_time))
-    state = _begun(model, inputs, times[0], initial_angle, initial_velocity, initial_acceleration)
+    state = _begun(model, inputs, times[0], initial_angle, initial_velocity, initial_acceleration, came)
     for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
         if last > first:
             _continue_into(output[first:last], part, state, inputs, times[first:last])
@@ -171,15 +174,16 @@ def _run_into(
     angle: float,
     velocity: float,
     acceleration: float = 0.0,
+    came: float = 0.0,
 ) -> None:
     state = np.zeros(1, STATE)
-    start = float(angle), float(velocity), float(acceleration)
+    start = float(angle), float(velocity), float(acceleration), float(came)
     run_from(model.record()[0], state[0], *_channels(inputs), times, *start, output)
 
 
-def _begun(model: Model, inputs: Inputs, time: float, angle: float, velocity: float, acceleration: float) -> np.ndarray:
-    """State record, shape (1,), at `time` [s], with the inputs from before it under way."""
-    state = new_state(model.record(), angle, velocity, acceleration)
+def _begun(model: Model, inputs: Inputs, time: float, *start: float) -> np.ndarray:
+    """State record, shape (1,), at `time` [s] as `new_state` has it, with the inputs from before it under way."""
+    state = new_state(model.record(), *start)
     begin(model.record()[0], state[0], *_channels(inputs), time)
     return state
 
@@ -223,12 +227,15 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
         supply = supply_voltage[earlier - 1] if supply_voltage.size > 0 else np.nan
         closed = enabled[earlier - 1] if enabled.size > 0 else True
         recall(p, s, input_times[:earlier], command[:earlier], supply, closed)
+        settle(p, s)
 
 
 @kernel
-def run_from(p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, acceleration, output):
+def run_from(
+    p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, acceleration, came, output
+):
     """`run` from where `place` puts `s` at the first sample; `s` is all zeros."""
-    place(p, s, angle, velocity, acceleration)
+    place(p, s, angle, velocity, acceleration, came)
     begin(p, s, input_times, command, supply_voltage, enabled, sample_times[0])
     run(p, s, input_times, command, supply_voltage, enabled, sample_times, output)
 
@@ -241,7 +248,7 @@ def run_stretches(
     for stretch in range(first.size):
         end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
         times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
-        place(p, states[stretch], angle[stretch], velocity[stretch], 0.0)
+        place(p, states[stretch], angle[stretch], velocity[stretch], 0.0, 0.0)
         show(states[stretch], lagged[stretch])
         begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
         run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)

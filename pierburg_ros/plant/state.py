@@ -83,21 +83,24 @@ STATE = np.dtype(
 """What a plant remembers; `s.<effect>.<name>` are the states that effects declare, all 0 at the start."""
 
 
-def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0, acceleration: float = 0.0) -> np.ndarray:
+def new_state(
+    record: np.ndarray, angle: float = 0.0, velocity: float = 0.0, acceleration: float = 0.0, came: float = 0.0
+) -> np.ndarray:
     """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current, cold.
 
-    Its sensor is as after motion with an even `acceleration` [rad/s^2].
+    Its sensor is as after motion with an even `acceleration` [rad/s^2], or one that has ended: see `place`.
     """
     state = np.zeros(1, STATE)
-    place(record[0], state[0], angle, velocity, acceleration)
+    place(record[0], state[0], angle, velocity, acceleration, came)
     return state
 
 
 @kernel
-def place(p, s, angle, velocity, acceleration):
+def place(p, s, angle, velocity, acceleration, came):
     """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed.
 
-    Its sensor is as after motion with an even `acceleration` [rad/s^2]; `s` is all zeros.
+    Its sensor is as after motion with an even `acceleration` [rad/s^2]; if it stands, as after motion that `came`
+    opening (+1) or closing (-1), 0 where that is not known. `s` is all zeros.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
     shaft slides as far as that bends them.
@@ -108,7 +111,7 @@ def place(p, s, angle, velocity, acceleration):
     s.velocity = s.motor_velocity = velocity
     s.sensor_hysteresis.followed = sensed(p, s)
     lag, play = trail(p)
-    s.sensor_hysteresis.magnet = sensed(p, s) - 0.5 * play * np.sign(velocity)
+    s.sensor_hysteresis.magnet = sensed(p, s) - 0.5 * play * np.sign(velocity if velocity != 0.0 else came)
     s.sensor_lag.lagged = s.sensor_hysteresis.magnet - lag * (velocity - lag * acceleration)
     s.direction = s.motor_direction = np.sign(velocity)
     s.flank = 1

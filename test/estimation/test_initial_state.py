@@ -5,6 +5,7 @@ import pytest
 from support.recordings import NOMINAL
 
 from pierburg_ros.estimation.initial_state import InitialState, from_standstill
+from pierburg_ros.estimation.run import parts_of, run_of
 from pierburg_ros.plant import Inputs, simulate
 from pierburg_ros.recording import Channel, Recording
 
@@ -23,18 +24,18 @@ def state(recording):
 
 
 def test_a_shaft_seen_at_a_stop_starts_exactly_there():
-    assert state(drawn((0.0, 10.0), (0.4205, 0.4205))) == (0.0, 0.0, 0.0)
+    assert state(drawn((0.0, 10.0), (0.4205, 0.4205))) == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_a_shaft_held_half_way_starts_at_the_mean_of_its_first_samples():
-    angle, velocity, _ = state(drawn((0.0, 10.0), (2.47, 2.47)))
+    angle, velocity, *_ = state(drawn((0.0, 10.0), (2.47, 2.47)))
     assert angle == pytest.approx(np.pi / 4, abs=3e-4)
     assert velocity == 0.0
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_one_that_rests_for_a_moment_starts_at_rest(seed):
-    angle, velocity, _ = state(drawn((0.0, 0.04, 0.5, 10.0), (2.47, 2.47, 4.0, 4.0), seed))
+    angle, velocity, *_ = state(drawn((0.0, 0.04, 0.5, 10.0), (2.47, 2.47, 4.0, 4.0), seed))
     assert angle == pytest.approx(np.pi / 4, abs=2e-3)
     assert velocity == 0.0
 
@@ -42,7 +43,7 @@ def test_one_that_rests_for_a_moment_starts_at_rest(seed):
 def test_a_shaft_that_moves_at_once_starts_with_its_velocity():
     time = np.arange(2000) / 500.0
     moving = 2.47 + 2.0 * time + 1e-4 * np.random.default_rng(3).standard_normal(2000)
-    _, velocity, _ = InitialState.of(time, moving).state(NOMINAL, "hall_voltage")
+    _, velocity, *_ = InitialState.of(time, moving).state(NOMINAL, "hall_voltage")
     assert velocity == pytest.approx(2.0 * (np.pi / 2) / 4.1, rel=0.05)
 
 
@@ -50,7 +51,7 @@ def test_a_shaft_that_moves_at_once_starts_with_its_velocity():
 def test_one_that_creeps_starts_with_its_velocity(rate):
     """Fifty samples, 0.1 s, tell a rate to 15 mV/s, which is 6 mrad/s."""
     recording = drawn((0.0, 0.15, 10.0), (2.0, 2.0 + 0.15 * rate, 2.0))
-    angle, velocity, _ = state(recording)
+    angle, velocity, *_ = state(recording)
     assert velocity == pytest.approx(rate * (np.pi / 2) / 4.1, abs=0.02)
     assert angle == pytest.approx((2.0 - 0.42) * (np.pi / 2) / 4.1, abs=1.5e-3)
     assert from_standstill(recording, NOMINAL) is recording
@@ -82,9 +83,9 @@ def test_the_angle_is_that_of_the_model_that_is_simulated():
     """2.47 V is half way between 0.42 V and 4.52 V, and a third of the way between 1.42 V and 4.57 V."""
     found = InitialState.of(TIME, np.full(TIME.size, 2.47))
     other = NOMINAL.with_values({"hall_voltage_closed": 1.42, "hall_voltage_open": 4.57})
-    assert found.state(NOMINAL, "hall_voltage") == (pytest.approx(np.pi / 4), 0.0, 0.0)
-    assert found.state(other, "hall_voltage") == (pytest.approx(np.pi / 6), 0.0, 0.0)
-    assert found.state(NOMINAL, "position") == (np.pi / 2, 0.0, 0.0)
+    assert found.state(NOMINAL, "hall_voltage") == (pytest.approx(np.pi / 4), 0.0, 0.0, 0.0)
+    assert found.state(other, "hall_voltage") == (pytest.approx(np.pi / 6), 0.0, 0.0, 0.0)
+    assert found.state(NOMINAL, "position") == (np.pi / 2, 0.0, 0.0, 0.0)
 
 
 def test_a_slow_sensor_is_behind_a_shaft_that_gathers_speed():
@@ -95,6 +96,20 @@ def test_a_slow_sensor_is_behind_a_shaft_that_gathers_speed():
         0.42 + volts * shown, volts * (velocity - lag * acceleration), NOISE, True, curvature=volts * acceleration
     )
     slow = NOMINAL.with_values({"sensor_lag.time_constant": lag})
-    assert start.state(slow, "hall_voltage") == pytest.approx((angle, velocity, acceleration))
+    assert start.state(slow, "hall_voltage") == pytest.approx((angle, velocity, acceleration, 0.0))
     begun = simulate(slow, Inputs(np.zeros(1), np.zeros(1)), np.zeros(1), angle, velocity, acceleration)
     assert begun[0] == pytest.approx(0.42 + volts * shown)
+
+
+@pytest.mark.parametrize(("levels", "came"), (((2.0, 2.2, 3.0, 3.0, 3.0), 1.0), ((4.0, 3.8, 3.0, 3.0, 3.0), -1.0)))
+def test_a_sensor_with_play_trails_behind_the_way_by_which_the_shaft_came(levels, came):
+    whole = drawn((0.0, 0.05, 0.4, 2.0, 10.0), levels)
+    (part,), _ = parts_of(whole, NOMINAL)
+    start, play = run_of(part, NOMINAL, whole=whole).start, 0.02
+    loose = NOMINAL.with_values({"sensor_hysteresis.width": play})
+    angle, _, _, direction = start.state(loose, "hall_voltage")
+    assert part.time[0] > 0.3
+    assert direction == came
+    assert angle - start.state(NOMINAL, "hall_voltage")[0] == pytest.approx(0.5 * play * came)
+    begun = simulate(loose, Inputs(np.zeros(1), np.zeros(1)), np.zeros(1), angle, 0.0, 0.0, direction)
+    assert begun[0] == pytest.approx(start.level)

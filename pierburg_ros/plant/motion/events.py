@@ -99,6 +99,17 @@ def _standing(p, s, time, amperes):
 
 
 @kernel
+def settle(p, s):
+    """Let the bristles of a shaft that stands off its stops bear what the torques on it leave, as far as they can."""
+    if p.presliding.stiffness == 0.0 or s.velocity != 0.0:
+        return
+    motor, net = _standing(p, s, s.time, s.current)
+    if off_stops(p, math.copysign(1.0, net), s.angle) != 0.0:
+        held = friction.level(p, math.copysign(1.0, net), 0.0, s.angle, motor)[0]
+        s.presliding.bristle = s.presliding.motor_bristle = min(max(net, -held), held) / p.presliding.stiffness
+
+
+@kernel
 def undisturbed(p, s):
     """How long [s] motor and shaft, standing as one, stand whatever the load from outside does by then.
 
