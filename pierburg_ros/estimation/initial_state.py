@@ -121,17 +121,19 @@ def rest_angle(model: Model) -> float:
 
 
 def from_standstill(recording: Recording, nominal: Model) -> Recording:
-    """`recording` from where the shaft first stands still, its time unchanged; as it is where its start is known.
+    """`recording` from where the shaft first rests, or at least creeps; as it is where its start is known.
 
-    It is as it is, too, where the shaft begins on a stop of the `nominal` actuator, or does not stand still soon. The
-    first samples of a standstill are left out as well: in them the last of the movement hides in the noise.
+    It is as it is, too, where the shaft begins on a stop of the `nominal` actuator, or does not stand still soon. Its
+    time is unchanged. The first samples of a standstill are left out as well: in them the last of the movement hides
+    in the noise.
     Samples tell badly how fast a shaft moves. A simulation that begins a little off then rests elsewhere until the
     next stop, for dry friction lets it rest anywhere.
     """
     start = InitialState.of(recording.time, recording.measured)
     if start.known or start.state(nominal, recording.quantity)[1] == 0.0:
         return recording
-    sample = first_standstill(recording.measured[: int(LATEST * recording.measured.size)], start.noise)
+    soon = recording.measured[: int(LATEST * recording.measured.size)]
+    sample = first_rest(soon, start.noise) or first_standstill(soon, start.noise)
     if sample is None:
         return recording
     return replace(recording, time=recording.time[sample:], measured=recording.measured[sample:])

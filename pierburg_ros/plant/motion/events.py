@@ -100,12 +100,20 @@ def _standing(p, s, time, amperes):
 
 @kernel
 def settle(p, s):
-    """Let the bristles of a shaft that stands off its stops bear what the torques on it leave, as far as they can."""
-    if p.presliding.stiffness == 0.0 or s.velocity != 0.0:
+    """Let gear and bristles lean as the torques in force have left them where the shaft stands or moves evenly.
+
+    The gear is twisted by the motor, and off the stops the bristles of a standing shaft bear what is left, as far as
+    they can. With play between the teeth both are left alone: which flank touches is not known.
+    """
+    if p.backlash.gap != 0.0:
         return
+    if p.gear_compliance.stiffness != 0.0:
+        twisting = torque_at(p, s, s.velocity, s.current) - ripple(p, s.motor_angle)
+        s.motor_angle = s.angle + twisting / p.gear_compliance.stiffness
     motor, net = _standing(p, s, s.time, s.current)
-    if off_stops(p, math.copysign(1.0, net), s.angle) != 0.0:
-        held = friction.level(p, math.copysign(1.0, net), 0.0, s.angle, motor)[0]
+    direction = math.copysign(1.0, net)
+    if p.presliding.stiffness != 0.0 and s.velocity == 0.0 and off_stops(p, direction, s.angle) != 0.0:
+        held = friction.level(p, direction, 0.0, s.angle, motor)[0]
         s.presliding.bristle = s.presliding.motor_bristle = min(max(net, -held), held) / p.presliding.stiffness
 
 
