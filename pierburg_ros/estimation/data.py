@@ -14,11 +14,12 @@ from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, parts_of, run_of
+from pierburg_ros.estimation.stamp_noise import stamp_noise
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
-from pierburg_ros.recording.noise import noise_of, stamp_noise
+from pierburg_ros.recording.noise import noise_of
 
 BLOCK = 15.7
 """Length of the blocks that train, validate and test in turn, in the actuator's own time; less in a recording shorter
@@ -172,7 +173,7 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
     )
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     lost = float(np.median([found.uncertainty for _, found in cut]))
-    stamped = float(np.median([stamp_noise(run.time, run.measured, noise) for run in runs]))
+    stamped = float(np.median([stamp_noise(part, model) for parts, _ in cut for part in parts]))
     unknown = (Omission(number, span, UNKNOWN) for number, (_, found) in enumerate(cut) for span in found.left_out)
     finest, _ = DECLARED[STEP].expected(model.scales)
     step = coarse_step([run.measured for run in runs], noise, finest)

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.estimation.memory import memory, top_speed
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.braking import braking
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.recording.loss import Span, merged
@@ -51,27 +51,13 @@ def pieces(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -
         return Pieces(_cut(recording, without) if without else [recording], 0.0, ())
     per_radian = 1.0 / abs(angle_per_unit(model))
     starts, ends = (np.array([span[place] for span in unknown]) for place in (0, 1))
-    moved = _top_speed(model) * (ends - starts) * _doubt(recording.command, starts, ends) * per_radian
+    moved = top_speed(model) * (ends - starts) * _doubt(recording.command, starts, ends) * per_radian
     doubtful = moved > SEEN * noise_of(recording.time, recording.measured)
     filled = replace(recording, command=_halved(recording.command, starts[~doubtful], ends[~doubtful]))
     left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
-    remembered = min(_memory(model), recording.duration)
+    remembered = min(memory(model), recording.duration)
     added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration
     return Pieces(_cut(filled, merged((*left_out, *without))), math.sqrt(added), left_out)
-
-
-def _top_speed(model: Model) -> float:
-    """Speed of the free shaft at full duty [rad/s], at which the back-EMF is all of the supply voltage.
-
-    Under other drives it is what the load makes of a large torque.
-    """
-    return model.scales.angle / model.scales.time
-
-
-def _memory(model: Model) -> float:
-    """Time constant [s] with which the spring takes an error of the angle back, infinite without a spring."""
-    stiffness = model.values.get("spring_stiffness", 0.0)
-    return braking(model) / stiffness if stiffness > 0.0 else math.inf
 
 
 def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:

@@ -1,4 +1,4 @@
-"""The noise of a measured signal, and of its stamps, estimated from them alone."""
+"""The noise of a measured signal, estimated from it alone."""
 
 from __future__ import annotations
 
@@ -8,9 +8,6 @@ from pierburg_ros.arrays import Signal
 
 SMALLEST = 2e-10
 """Least noise, as a share of the largest value: a nanovolt of 5 V, below what any converter or simulation resolves."""
-ACROSS = 10
-"""Samples across which the rate of a signal is told. Work: noise then takes off a tenth of what it does from sample to
-sample, and is taken off besides; not varied."""
 USUAL = 1.5
 """Intervals up to so many medians are no gaps. Derived: halfway to the next sample but one."""
 
@@ -34,18 +31,3 @@ def noise_of(time: Signal, measured: Signal) -> float:
     step = float(np.min(np.diff(values))) if values.size > 1 else 0.0
     largest = float(np.max(np.abs(values), initial=0.0)) or 1.0
     return float(max(deviation, step / np.sqrt(12.0), SMALLEST * largest))
-
-
-def stamp_noise(time: Signal, measured: Signal, noise: float) -> float:
-    """Standard deviation that stamps which are off bring into a signal with this `noise`, same unit.
-
-    The stamp of an input and that of a sample are taken to be off from one another as two of samples are: by the
-    standard deviation of the intervals between them. Meanwhile the signal moves on at its rate, root mean square.
-    """
-    interval = np.diff(time)
-    if measured.size <= ACROSS:
-        return 0.0
-    median = float(np.median(interval))
-    change = float(np.mean(np.square(measured[ACROSS:] - measured[:-ACROSS])))
-    rate = np.sqrt(max(change - 2.0 * noise**2, 0.0)) / (ACROSS * median)
-    return float(np.std(interval[interval < USUAL * median]) * rate)
