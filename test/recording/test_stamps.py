@@ -28,7 +28,7 @@ def test_a_clock_that_is_even_is_not_off():
 def test_stamps_are_off_by_what_they_were_moved(seed):
     true = PERIOD * np.arange(20_000)
     stamped = true + OFF * np.random.default_rng(seed).standard_normal(true.size)
-    assert stamp_error(stamped, measured(true), NOISE) == pytest.approx(OFF, rel=0.1)
+    assert stamp_error(stamped, measured(true), NOISE) == pytest.approx(OFF, rel=0.2)
 
 
 @pytest.mark.parametrize("seed", range(5))
