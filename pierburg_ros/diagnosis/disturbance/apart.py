@@ -53,14 +53,15 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
 
 
 def _promising(found: Found) -> list[Fit]:
-    """The nominal model and the explanations by one quantity that come nearest where errors that are large do not
-    count for more."""
+    """The nominal model, the best pair, and the best single quantities, errors that are large not counting for more."""
 
     def cost(fit: Fit) -> float:
         return float(np.mean(np.square(forgiven(fit.solution.residual))))
 
-    singles = [fit for fit in found.of_size(1) if fit.explanation.changed is None]
-    return [found.fits[Explanation()], *sorted(singles, key=cost)[: BESIDE - 1]]
+    singles, pairs = (
+        sorted((fit for fit in found.of_size(size) if fit.explanation.changed is None), key=cost) for size in (1, 2)
+    )
+    return [found.fits[Explanation()], *pairs[:1], *singles][:BESIDE]
 
 
 def _without_stretches(
