@@ -31,7 +31,7 @@ def _parts(run: Run) -> Iterator[Run]:
     starts = [run.start, *(_start(run.measured, rest, noise) for rest in rests)]
     edges = [0, *((rest.start + rest.stop) // 2 for rest in rests), run.time.size]
     for start, (first, last) in zip(starts, pairwise(edges), strict=True):
-        yield replace(run.part(slice(first, last)), start=start)
+        yield replace(run.part(slice(first, last)), start=start, since=run.since if first == 0 else None)
 
 
 def _start(measured: Signal, rest: slice, noise: float) -> InitialState:

@@ -13,7 +13,7 @@ from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.estimation.shooting import Shooting, forgets, stretch_length
 from pierburg_ros.estimation.torque_balance import ahead, goes_round, recorded_lag
-from pierburg_ros.plant import Inputs, Model, simulate, simulate_switched
+from pierburg_ros.plant import Inputs, Model, lasting_state, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
@@ -39,6 +39,7 @@ class Run:
     model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
     `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
     again and again. `input_lag` [s] is that of a filter behind which the input was recorded, taken out of `inputs`.
+    `since` is when and how the whole recording began of which this is a later part, None where it is not.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Run:
     number: int = 0
     shooting: Shooting | None = None
     input_lag: float = 0.0
+    since: tuple[float, InitialState] | None = None
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
         """What `model` makes of the inputs, in the measured unit, shape (samples,).
@@ -61,12 +63,19 @@ class Run:
         """
         if self.shooting is not None:
             return self._shot(self.shooting, model, switch)
-        start = self.start.state(model, self.quantity)
+        start, lasting = self.start.state(model, self.quantity), self._lasting(model)
         if switch is None:
-            output = simulate(model, self.inputs, self.time, *start)
+            output = simulate(model, self.inputs, self.time, *start, lasting)
         else:
-            output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start)
+            output = simulate_switched(model, switch.model, switch.time, self.inputs, self.time, *start, lasting)
         return output if self.decoder is None else decoded(self.decoder, output)
+
+    def _lasting(self, model: Model) -> np.ndarray | None:
+        """What lasts, such as heat, from before the first sample; None where nothing was before."""
+        if self.since is None:
+            return None
+        time, start = self.since
+        return lasting_state(model, self.inputs, time, self.time[0], *start.state(model, self.quantity))
 
     def _shot(self, shooting: Shooting, model: Model, switch: Switch | None) -> Signal:
         """In stretches; the one in which another model takes over begins and ends with either's own."""
@@ -132,7 +141,7 @@ def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
 def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording | None = None) -> Run:
     """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit.
 
-    It may be a part of a `whole` one, which says how the shaft came to where it stands.
+    It may be a part of a `whole` one, which says how the shaft came to where it stands and how warm it is.
     """
     actuator, whole = model.actuator, whole or recording
     if recording.input != actuator.input:
@@ -158,6 +167,7 @@ def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording
         length = stretch_length(recording.time, recording.measured, recording.quantity)
         shooting = Shooting.of(recording.time, recording.measured, length)
     before = whole.measured[whole.time < recording.time[0]]
+    since = (whole.time[0], InitialState.of(whole.time, whole.measured)) if before.size else None
     start = InitialState.of(recording.time, recording.measured, before)
     decodes = recording.quantity == "position" and actuator.quantity == "hall_voltage"
     inputs, lag = inputs_in_force(recording, start, model), 0.0
@@ -176,6 +186,7 @@ def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording
         number,
         shooting,
         lag,
+        since,
     )
 
 

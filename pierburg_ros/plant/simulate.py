@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
@@ -69,18 +70,35 @@ def simulate(
     initial_velocity: float = 0.0,
     initial_acceleration: float = 0.0,
     came: float = 0.0,
+    lasting: np.ndarray | None = None,
 ) -> Signal:
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
     No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s], a sensor
     with a lag as after an even `initial_acceleration` [rad/s^2], one with play as after motion that `came` opening (+1)
-    or closing (-1) where the shaft stands. Loads go by the time of the samples, and a command from before the first
-    one is under way. Not a number from where a parameter set cannot be simulated.
+    or closing (-1) where the shaft stands. It starts cold unless `lasting` says otherwise (`lasting_state`). Loads go
+    by the time of the samples, and a command from before the first one is under way. Not a number from where a
+    parameter set cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
-    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration, came)
+    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration, came, lasting)
     return output
+
+
+def lasting_state(model: Model, inputs: Inputs, first: float, last: float, *start: float) -> np.ndarray:
+    """State record, shape (1,), blank but for what lasts, such as heat: as a run from `first` leaves it at `last` [s].
+
+    It starts as `new_state` has it.
+    """
+    blank = np.zeros(1, STATE)
+    effects = [effect for effect in model.active_effects if EFFECT[effect].memory == "lasting"]
+    if effects:
+        state = _begun(model, inputs, first, *start)
+        _continue_into(np.empty(2), model, state, inputs, np.array([first, last]))
+        for effect in effects:
+            blank[effect] = state[effect]
+    return blank
 
 
 def motor_torque(model: Model, inputs: Inputs, time: ArrayLike) -> Signal:
@@ -114,12 +132,14 @@ def simulate_switched(
     initial_velocity: float = 0.0,
     initial_acceleration: float = 0.0,
     came: float = 0.0,
+    lasting: np.ndarray | None = None,
 ) -> Signal:
     """`simulate` of `model`, with `after` taking over the running state at `switch_time` [s]."""
     times = _increasing(sample_times)
     output = np.empty(times.size)
     split = int(np.searchsorted(times, switch_time))
-    state = _begun(model, inputs, times[0], initial_angle, initial_velocity, initial_acceleration, came)
+    start = (initial_angle, initial_velocity, initial_acceleration, came)
+    state = _begun(model, inputs, times[0], *start, lasting=lasting)
     for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
         if last > first:
             _continue_into(output[first:last], part, state, inputs, times[first:last])
@@ -175,15 +195,16 @@ def _run_into(
     velocity: float,
     acceleration: float = 0.0,
     came: float = 0.0,
+    lasting: np.ndarray | None = None,
 ) -> None:
-    state = np.zeros(1, STATE)
+    state = np.zeros(1, STATE) if lasting is None else lasting.copy()
     start = float(angle), float(velocity), float(acceleration), float(came)
     run_from(model.record()[0], state[0], *_channels(inputs), times, *start, output)
 
 
-def _begun(model: Model, inputs: Inputs, time: float, *start: float) -> np.ndarray:
+def _begun(model: Model, inputs: Inputs, time: float, *start: float, lasting: np.ndarray | None = None) -> np.ndarray:
     """State record, shape (1,), at `time` [s] as `new_state` has it, with the inputs from before it under way."""
-    state = new_state(model.record(), *start)
+    state = new_state(model.record(), *start, lasting=lasting)
     begin(model.record()[0], state[0], *_channels(inputs), time)
     return state
 

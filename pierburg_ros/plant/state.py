@@ -84,13 +84,21 @@ STATE = np.dtype(
 
 
 def new_state(
-    record: np.ndarray, angle: float = 0.0, velocity: float = 0.0, acceleration: float = 0.0, came: float = 0.0
+    record: np.ndarray,
+    angle: float = 0.0,
+    velocity: float = 0.0,
+    acceleration: float = 0.0,
+    came: float = 0.0,
+    *,
+    lasting: np.ndarray | None = None,
 ) -> np.ndarray:
-    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current, cold.
+    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current.
+
+    Cold, unless `lasting` is a record that is blank but for what lasts.
 
     Its sensor is as after motion with an even `acceleration` [rad/s^2], or one that has ended: see `place`.
     """
-    state = np.zeros(1, STATE)
+    state = np.zeros(1, STATE) if lasting is None else lasting.copy()
     place(record[0], state[0], angle, velocity, acceleration, came)
     return state
 
@@ -100,7 +108,8 @@ def place(p, s, angle, velocity, acceleration, came):
     """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed.
 
     Its sensor is as after motion with an even `acceleration` [rad/s^2]; if it stands, as after motion that `came`
-    opening (+1) or closing (-1), 0 where that is not known. `s` is all zeros.
+    opening (+1) or closing (-1), 0 where that is not known. `s` is all zeros but for what
+    lasts, such as heat.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
     shaft slides as far as that bends them.

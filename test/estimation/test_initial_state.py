@@ -124,8 +124,9 @@ def test_a_sensor_with_play_trails_behind_the_way_by_which_the_shaft_came(levels
         {"sensor_hysteresis.width": 0.02},
         {"presliding.stiffness": 15.0, "presliding.damping": 0.05},
         {"gear_compliance.stiffness": 17.6, "gear_compliance.damping": 0.061},
+        {"thermal_resistance.thermal_resistance": 30.0, "thermal_resistance.heat_capacity": 0.1},
     ),
-    ids=("nominal", "play", "bristles", "compliance"),
+    ids=("nominal", "play", "bristles", "compliance", "heat"),
 )
 def test_what_is_taken_up_at_a_rest_goes_on_as_it_would_have(effect):
     """Opening has ended in a rest at 2.2 s; the simulation begun there has to be that begun on the stop."""
