@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from pierburg_ros.arrays import Signal
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 
@@ -14,6 +17,14 @@ def top_speed(model: Model) -> float:
     Under other drives it is what the load makes of a large torque.
     """
     return model.scales.angle / model.scales.time
+
+
+def remaining(moved: Signal, model: Model, duration: float) -> float:
+    """Root mean square over a `duration` [s] of what the shaft is off that was `moved` so far, each time by chance.
+
+    Same unit as `moved`, shape (times,). Each fades with the time constant of `model`, its square with half of it.
+    """
+    return math.sqrt(float(np.sum(np.square(moved))) * 0.5 * min(memory(model), duration) / duration)
 
 
 def memory(model: Model) -> float:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.memory import memory, top_speed
+from pierburg_ros.estimation.memory import remaining, top_speed
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording
@@ -55,9 +55,8 @@ def pieces(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -
     doubtful = moved > SEEN * noise_of(recording.time, recording.measured)
     filled = replace(recording, command=_halved(recording.command, starts[~doubtful], ends[~doubtful]))
     left_out = tuple(span for span, cut in zip(unknown, doubtful, strict=True) if cut)
-    remembered = min(memory(model), recording.duration)
-    added = float(np.sum(np.square(moved[~doubtful]))) * 0.5 * remembered / recording.duration
-    return Pieces(_cut(filled, merged((*left_out, *without))), math.sqrt(added), left_out)
+    added = remaining(moved[~doubtful], model, recording.duration)
+    return Pieces(_cut(filled, merged((*left_out, *without))), added, left_out)
 
 
 def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:

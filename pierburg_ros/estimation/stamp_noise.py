@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pierburg_ros.estimation.memory import memory, top_speed
+from pierburg_ros.estimation.memory import remaining, top_speed
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Recording
@@ -31,5 +31,4 @@ def stamp_noise(recording: Recording, model: Model) -> float:
         return seen
     inside = (recording.command.time >= time[0]) & (recording.command.time <= time[-1])
     moved = top_speed(model) * off * np.abs(np.diff(recording.command.values[inside])) / abs(angle_per_unit(model))
-    remembered = min(memory(model), recording.duration)
-    return math.hypot(seen, math.sqrt(float(np.sum(np.square(moved))) * 0.5 * remembered / recording.duration))
+    return math.hypot(seen, remaining(moved, model, recording.duration))
