@@ -102,13 +102,37 @@ def redated(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
-    """The better fit from the next steps of the cost before and after the moment of `fit`, or `fit` itself."""
+    """The better fit from the next steps of the cost before and after the moment of `fit`, or `fit` itself.
+
+    A step may be narrow: it is entered where the one of `fit` ends.
+    """
     moments = _moments(estimator, fit)
     middle = REDATED.size // 2
-    sides = (moments[:middle][::-1], moments[middle + 1 :])
-    elsewhere = [[values for chi2, values in side if abs(chi2 - fit.chi2) > LEVEL * fit.chi2] for side in sides]
-    fits = [estimator.fit(fit.explanation, side[0]) for side in elsewhere if side]
+    beside = (_beside(estimator, fit, side) for side in (moments[:middle][::-1], moments[middle + 1 :]))
+    fits = [estimator.fit(fit.explanation, values) for values in beside if values is not None]
     return min([fit, *fits], key=lambda found: found.chi2)
+
+
+def _beside(estimator: Estimator, fit: Fit, side: list[tuple[float, dict[str, float]]]) -> dict[str, float] | None:
+    """The values of `fit` with the first moment off its step on one `side`, to a sample; None if there is none."""
+    name, run, inside = f"{fit.explanation.changed}{WHEN}", estimator.data.runs[0], fit.values
+    for chi2, outside in side:
+        if not _on_step(chi2, fit):
+            break
+        inside = outside
+    else:
+        return None
+    while abs(outside[name] - inside[name]) > run.time[1] - run.time[0]:
+        between = {**fit.values, name: 0.5 * (outside[name] + inside[name])}
+        if _on_step(estimator.chi2_at(fit.explanation, between), fit):
+            inside = between
+        else:
+            outside = between
+    return outside
+
+
+def _on_step(chi2: float, fit: Fit) -> bool:
+    return abs(chi2 - fit.chi2) <= LEVEL * fit.chi2
 
 
 def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, float]]]:

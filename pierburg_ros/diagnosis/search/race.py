@@ -10,7 +10,7 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.linear import redated
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.selection import ADEQUATE, PROMISING, adequate
+from pierburg_ros.diagnosis.search.selection import ADEQUATE, PROMISING, adequate, complete
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 
@@ -54,7 +54,7 @@ def winners(
     if most is not None:
         kept = _best_of_each(kept)[:most]
     entries = _best_of_each(list(pool.map(lambda entry: _second(entry, progress), kept)))
-    if entries and not adequate(entries[0].fit):
+    if entries and not complete(entries[0].fit):
         near = NEAR * entries[0].fit.ratio
         entries = _best_of_each(list(pool.map(lambda entry: _dated(entry, near), entries)))
     nearest = entries[0].fit.ratio if entries else 0.0
