@@ -27,9 +27,10 @@ FIRST_PART = 2 * CYCLE * BLOCK
 """How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
 that every kind of block is there twice."""
 NEARLY = 5.0
-"""Training error over noise up to which the best explanation may only have stopped too early, and that of the likeliest
-over the least up to which it may. Chosen: descents to true explanations were seen to stop at 1.25 to 16 times the noise
-(n = 2 trials), and one likeliest at 1.9 times the least; not varied."""
+"""Training error over noise up to which the best explanation may only have stopped too early, and a search does not
+resign; and that of the likeliest over the least up to which it may. Chosen: descents to true explanations were seen to
+stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest at 1.9 times the least, and a search resigned at 1.18
+times the noise whose truth was found 18 s later; not varied."""
 REFINED = 2
 """How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
 COMPARABLE = 1.5
@@ -164,7 +165,8 @@ class Search:
     def _likeliest_accounts_for_all(self) -> bool:
         """Whether what is likeliest beside a remainder leaves nothing, fitted as if there were none; asked once.
 
-        It is not refined where something else comes far nearer; where it leaves too much, a search that resigns does.
+        It is not refined where something else comes far nearer. Where it leaves too much, and nothing comes near the
+        noise either, a search that resigns does.
         """
         if self.beside is not None:
             return False
@@ -172,12 +174,16 @@ class Search:
         reached = self.beside.reached.fit
         if reached.explanation.size <= self.beam.depth:
             fit = self.add(reached.explanation, reached.values)
-            if fit.ratio < NEARLY * min(known.ratio for known in self.fits.values()):
+            if fit.ratio < NEARLY * self._least():
                 self.refine([fit])
             if adequate(self.fits[reached.explanation]):
                 return True
-        self.resigned = self.beam.resigns and not self.beside.open
+        self.resigned = self.beam.resigns and not self.beside.open and self._least() >= NEARLY
         return False
+
+    def _least(self) -> float:
+        """The least training error over noise so far."""
+        return min((fit.ratio for fit in list(self.fits.values())), default=np.inf)
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""

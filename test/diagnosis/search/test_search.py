@@ -142,12 +142,13 @@ def test_a_search_that_resigns_grows_nothing_in_turn(short: Data, pool: Executor
 
 
 @pytest.mark.parametrize(
-    ("left", "beside", "resigned"), [(5000.0, 3.0, True), (100.0, 3.0, False), (5000.0, 1.0, False)]
+    ("left", "beside", "resigned"),
+    [(5000.0, 30.0, True), (100.0, 30.0, False), (5000.0, 3.0, False), (5000.0, 1.0, False)],
 )
 def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     empty: Search, monkeypatch: pytest.MonkeyPatch, left: float, beside: float, resigned: bool
 ) -> None:
-    """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted as if nothing were, leaves `beside`."""
+    """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted as if nothing were, leaves `beside` noises."""
     reached = made_up(ONES[0], 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
