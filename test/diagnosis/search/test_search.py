@@ -148,7 +148,7 @@ def test_a_search_that_resigns_grows_nothing_in_turn(short: Data, pool: Executor
 def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     empty: Search, monkeypatch: pytest.MonkeyPatch, left: float, beside: float, resigned: bool
 ) -> None:
-    """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted as if nothing were, leaves `beside` noises."""
+    """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted by itself, leaves `beside` noises."""
     reached = made_up(ONES[0], 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
