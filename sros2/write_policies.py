@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import reduce
@@ -18,7 +19,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from pierburg_ros.nodes.core.policy import Rights, policy
-from pierburg_ros.nodes.graph.rights import rights_of
+from pierburg_ros.nodes.graph.rights import DEADLINE, rights_of
 from pierburg_ros.processes import end, own_graph, start_node
 
 FOLDER = Path(__file__).parent
@@ -48,6 +49,7 @@ def observed(name: str, folder: Path) -> Rights:
         observers = [graphs.enter_context(started(name, _with_paths(way, folder))) for way in WAYS[name]]
         if name in BESIDE_ANOTHER:
             observers.append(graphs.enter_context(started(name, {}, BESIDE_ANOTHER[name])))
+            _wait_for_reader(observers[-1], BESIDE_ANOTHER[name])
         return reduce(Rights.__or__, rights_of(observers, name))
 
 
@@ -67,6 +69,15 @@ def started(name: str, parameters: dict[str, object], published: str = "") -> It
         end(process)
         observer.destroy_node()
         rclpy.shutdown(context=context)
+
+
+def _wait_for_reader(observer: Node, topic: str) -> None:
+    """Wait until a node reads a `topic` that the `observer` offers; TimeoutError where none does."""
+    end = time.monotonic() + DEADLINE
+    while observer.count_subscribers(topic) == 0:
+        if time.monotonic() > end:
+            raise TimeoutError(f"nobody read {topic} within {DEADLINE:g} s")
+        time.sleep(0.1)
 
 
 def _with_paths(parameters: dict[str, object], folder: Path) -> dict[str, object]:
