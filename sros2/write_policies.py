@@ -73,9 +73,9 @@ def started(name: str, parameters: dict[str, object], published: str = "") -> It
 
 def _wait_for_reader(observer: Node, topic: str) -> None:
     """Wait until a node reads a `topic` that the `observer` offers; TimeoutError where none does."""
-    end = time.monotonic() + DEADLINE
+    until = time.monotonic() + DEADLINE
     while observer.count_subscribers(topic) == 0:
-        if time.monotonic() > end:
+        if time.monotonic() > until:
             raise TimeoutError(f"nobody read {topic} within {DEADLINE:g} s")
         time.sleep(0.1)
 

@@ -18,7 +18,7 @@ from pierburg_ros.plant.motion.events import settle
 from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import AHEAD, STATE, new_state, place
+from pierburg_ros.plant.state import AHEAD, STATE, blank_state, new_state, place
 from pierburg_ros.plant.torques.sensor import read_all, show
 from pierburg_ros.workers import workers
 
@@ -91,7 +91,7 @@ def lasting_state(model: Model, inputs: Inputs, first: float, last: float, *star
 
     It starts as `new_state` has it.
     """
-    blank = np.zeros(1, STATE)
+    blank = blank_state()
     effects = [effect for effect in model.active_effects if EFFECT[effect].memory == "lasting"]
     if effects:
         state = _begun(model, inputs, first, *start)
@@ -197,7 +197,7 @@ def _run_into(
     came: float = 0.0,
     lasting: np.ndarray | None = None,
 ) -> None:
-    state = np.zeros(1, STATE) if lasting is None else lasting.copy()
+    state = blank_state(lasting)
     start = float(angle), float(velocity), float(acceleration), float(came)
     run_from(model.record()[0], state[0], *_channels(inputs), times, *start, output)
 
@@ -255,7 +255,7 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
 def run_from(
     p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, acceleration, came, output
 ):
-    """`run` from where `place` puts `s` at the first sample; `s` is all zeros."""
+    """`run` from where `place` puts `s` at the first sample; `s` is all zeros but for what lasts."""
     place(p, s, angle, velocity, acceleration, came)
     begin(p, s, input_times, command, supply_voltage, enabled, sample_times[0])
     run(p, s, input_times, command, supply_voltage, enabled, sample_times, output)

@@ -98,9 +98,14 @@ def new_state(
 
     Its sensor is as after motion with an even `acceleration` [rad/s^2], or one that has ended: see `place`.
     """
-    state = np.zeros(1, STATE) if lasting is None else lasting.copy()
+    state = blank_state(lasting)
     place(record[0], state[0], angle, velocity, acceleration, came)
     return state
+
+
+def blank_state(lasting: np.ndarray | None = None) -> np.ndarray:
+    """State record, shape (1,), all zeros but for what is `lasting`; a copy of that."""
+    return np.zeros(1, STATE) if lasting is None else lasting.copy()
 
 
 @kernel
@@ -108,8 +113,7 @@ def place(p, s, angle, velocity, acceleration, came):
     """Put an actuator at `angle` [rad] with `velocity` [rad/s], transmission relaxed.
 
     Its sensor is as after motion with an even `acceleration` [rad/s^2]; if it stands, as after motion that `came`
-    opening (+1) or closing (-1), 0 where that is not known. `s` is all zeros but for what
-    lasts, such as heat.
+    opening (+1) or closing (-1), 0 where that is not known. `s` is all zeros but for what lasts, such as heat.
 
     On the lower stop the bristles of the friction contact lean as closing onto the stop has left them, and while the
     shaft slides as far as that bends them.
