@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from pierburg_ros.audit.balance import in_balance
+from pierburg_ros.audit.balance import made_up
 from pierburg_ros.audit.explained import BRIEF, CREDIBLE, ENOUGH, FEWEST, Explained, explained
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.loop import closed_loop
@@ -87,16 +87,18 @@ def faults_of(signals: Signals, given: Explained | None, nominal: Model, recordi
 def mended(signals: Signals, given: Explained | None, nominal: Model, recording: Recording) -> Fault | None:
     """The slip that, once undone, lets the actuator explain the motion; otherwise that nothing does.
 
-    An input that plainly causes the motion in another part of the recording is the right one: something else has acted.
+    An input that balances the torques along a motion, or plainly causes it in another part of the recording, is the
+    right one: something else has acted.
     """
+    if given is not None and made_up(Signals.of(recording, TIMED), nominal):
+        return None
     named = (*slips(signals, nominal), *shifted(signals, given))
     left = BETTER * given.cost if given is not None else 1.0
     found = undone(named, left, nominal) or undone(tuple(between_stops(signals, nominal)), left, nominal)
     if found:
         return None if found[0][0].what == LATER else blamed(found, signals, given, nominal)
-    moves = given is not None and given.share >= ENOUGH
-    agrees = given is not None and given.agreement >= ENOUGH
-    if (moves and (agrees or in_balance(signals, nominal))) or causes(Signals.elsewhere(recording), nominal):
+    agrees = given is not None and min(given.share, given.agreement) >= ENOUGH
+    if agrees or causes(Signals.elsewhere(recording), nominal):
         return None
     return unrelated(signals, given, nominal)
 

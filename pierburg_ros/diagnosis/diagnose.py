@@ -10,12 +10,12 @@ from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
 from pierburg_ros.diagnosis.disturbance.apart import apart, nominal_elsewhere
-from pierburg_ros.diagnosis.disturbance.rounding import rounded, unnamed
+from pierburg_ros.diagnosis.disturbance.rounding import rounded
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.left_out import BETTER
-from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined
+from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined, unnamed
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
@@ -106,7 +106,8 @@ def examined(
         coarse = search(doubt.kept_apart(data), nominal, progress, jobs, None, deadline)
         if verdict_on(coarse.chosen) != "unexplained":
             return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
-        return replace(found, data=doubt.said(found.data, unsettled=True)), unnamed(found)
+        told = deadline.attempt(partial(unnamed, coarse, jobs, deadline), unexamined(coarse))
+        return replace(coarse, data=doubt.said(coarse.data, unsettled=True)), told
     if single and not turning:
         tell, time = staged(progress, "disturbances"), deadline.part(APART)
         found = time.attempt(partial(apart, found, recordings[0], tell, jobs, time), found)

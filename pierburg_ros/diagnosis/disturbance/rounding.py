@@ -6,10 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.estimation.data import Data, rms
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED, grid
 from pierburg_ros.plant import Inputs
 from pierburg_ros.recording import Recording
@@ -35,7 +33,7 @@ class Rounding:
         """`data` with a remark on it; `unsettled` where an explanation that stands out was not found beside it."""
         name, driven = self.recording.name, self.recording.input
         moved = f"{self.size:.2g} {data.actuator.unit}"
-        then = ", as much as is left: nothing can be concluded" if unsettled else ", which counts as noise"
+        then = ", as much as is left: no effect can be concluded" if unsettled else ", which counts as noise"
         remark = (
             f"{name}: the {driven} is logged in steps of {self.step:.3g}. If what was applied lay between them, that"
             f" moves the signal by some {moved}{then}. Log the {driven} as it is applied."
@@ -66,8 +64,3 @@ def between_steps(inputs: Inputs, recording: Recording, step: float) -> Inputs:
     place = np.searchsorted(recording.command.time, inputs.time, side="right") - 1
     command = inputs.command + np.where(place < 0, 0.0, off[np.maximum(place, 0)])
     return replace(inputs, command=np.clip(command, -1.0, 1.0) if recording.input == "duty" else command)
-
-
-def unnamed(found: Found) -> Remainder:
-    """What stands where nothing can be concluded: the nominal model."""
-    return Remainder(found.estimator.restated(found.fits[Explanation()]), {}, {}, {}, None)

@@ -47,6 +47,13 @@ def unexamined(found: Found) -> Remainder:
     return Remainder(found.estimator.restated(_below(found, None)), {}, {}, {}, None)
 
 
+def unnamed(found: Found, jobs: int | None, deadline: Deadline) -> Remainder:
+    """What stands where no effect can be concluded: the model below what remains, with intervals."""
+    base = found.estimator.restated(_below(found, None))
+    with workers(jobs, deadline) as pool:
+        return Remainder(base, estimates(found.estimator, base, pool.map), {}, {}, None)
+
+
 def remainder(
     found: Found, progress: Progress = lambda _: None, jobs: int | None = None, deadline: Deadline | None = None
 ) -> Remainder:
