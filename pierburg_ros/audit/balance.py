@@ -46,8 +46,8 @@ def made_up(signals: Signals, nominal: Model) -> bool:
     balance = over_a_turn(nominal, [(signals.inputs, signals.time, signals.measured, seen)])
     driven = float(np.var(motor_torque(nominal, signals.inputs, signals.time)))
     off = math.exp(CREDIBLE)
-    friction = nominal.values["coulomb_friction"]
-    as_described = friction / off <= balance.friction <= off * friction if friction > 0.0 else balance.friction > 0.0
+    friction, resisted = nominal.values["coulomb_friction"], balance.resistance
+    as_described = friction / off <= resisted <= off * friction if friction > 0.0 else resisted > 0.0
     return balance.left**2 <= (1.0 - MADE_UP) * driven and as_described and _accelerating(signals, nominal) <= off
 
 

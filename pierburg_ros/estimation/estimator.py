@@ -13,7 +13,7 @@ from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
-from pierburg_ros.estimation.least_squares import FULL, Map, Solution, jacobian, minimise
+from pierburg_ros.estimation.least_squares import FULL, TOLERANCE, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import counted, repetition
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.estimation.rests import cut_at_rests
@@ -121,7 +121,7 @@ class Estimator:
         forgiving: bool = False,
         steps: Signal | None = None,
         held: str | None = None,
-        tolerance: float = 1e-4,
+        tolerance: float = TOLERANCE,
         slopes: Signal | None = None,
         enough: float = -np.inf,
     ) -> Fit:

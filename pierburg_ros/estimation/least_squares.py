@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 
 Residual = Callable[[Signal], Signal]
-Map = Callable[..., Iterable[Signal]]
+Map = Callable[..., Iterable[Any]]
 
 FULL = 25
 """Iterations after which a descent ends that still gains. Work: 68 descents of an effect to a trial took 18
@@ -22,6 +23,9 @@ descent that is worth more is carried on; not varied."""
 AS_FORESEEN = 0.9
 """Share of the foreseen fall of the cost from which slopes from elsewhere serve for a step. Measured: static friction
 that the Coulomb friction can stand for gave 0.81 with slopes from where there is none, and led astray (n = 1)."""
+TOLERANCE = 1e-4
+"""Share of the cost that an iteration has to lower it by for a descent to go on. Derived: of the 22,500
+samples that train in a minute it is 2 of chi2, about what chance gives one quantity."""
 LIGHTEST = 1e-9
 """Least damping of a step. Derived: far above rounding, so that quantities with the same slopes, or without, can be
 solved for."""
@@ -56,7 +60,7 @@ def minimise(
     upper: Signal,
     step: Signal,
     iterations: int = FULL,
-    tolerance: float = 1e-4,
+    tolerance: float = TOLERANCE,
     over: Map = map,
     slopes: Signal | None = None,
     enough: float = -np.inf,

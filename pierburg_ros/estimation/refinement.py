@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -104,7 +105,8 @@ def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
 def _measured(estimator: Estimator, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
     """The cost where each of the `moves` leads, and the values there."""
     places = [_values(estimator, fit, move) for move in moves]
-    return [(estimator.chi2_at(fit.explanation, values), values) for values in places]
+    costs = estimator.over(partial(estimator.chi2_at, fit.explanation), places)
+    return list(zip(costs, places, strict=True))
 
 
 def _steps(estimator: Estimator, fit: Fit, coarse: bool) -> Signal:

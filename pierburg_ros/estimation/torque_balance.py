@@ -58,8 +58,8 @@ Part = tuple[Inputs, Signal, Signal, Flags]
 class Balance:
     """What makes up the motor torque: `lag` [s] of its record, and over a turn `cosines` and `sines` [N.m] by `orders`.
 
-    `friction` [N.m] is what resists the movement, on average over its way; `left` the root mean square [N.m] of what
-    nothing makes up.
+    `friction` [N.m] is what resists movement at any speed, `resistance` [N.m] all that resists it, on average over its
+    way; `left` the root mean square [N.m] of what nothing makes up.
     """
 
     lag: float
@@ -67,6 +67,7 @@ class Balance:
     cosines: Signal
     sines: Signal
     friction: float
+    resistance: float
     left: float
 
     @property
@@ -214,10 +215,12 @@ def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tup
         known = np.concatenate([known, cosines[:, order - 1 : order], sines[:, order - 1 : order]], axis=1)
     lag = float(found[first - 1]) if lagged else 0.0
     cosine, sine = found[first::2], found[first + 1 :: 2]
-    resisted = float(known[kept, :3] @ found[:3] @ motion.velocity[kept])
+    friction = max(float(found[1] + found[0] * np.mean(known[kept, 1])), 0.0)
     way = float(np.sum(np.abs(motion.velocity[kept])))
-    friction = max(resisted / way, 0.0) if way > 0.0 else 0.0
-    return Balance(lag, np.array(orders, dtype=np.int64), cosine, sine, friction, float(np.std(left[kept]))), kept
+    resistance = float(known[kept, :3] @ found[:3] @ motion.velocity[kept]) / way if way > 0.0 else 0.0
+    return Balance(
+        lag, np.array(orders, dtype=np.int64), cosine, sine, friction, resistance, float(np.std(left[kept]))
+    ), kept
 
 
 def _least_squares(known: Signal, wanted: Signal) -> Signal:

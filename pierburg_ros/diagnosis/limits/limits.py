@@ -108,23 +108,26 @@ def limits(
     for case in _cases(found, final):
         if case.variant.effect not in final.explanation.effects:
             strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
-    tested: list[Limit | None] = []
+    # a simulation takes the longer the stiffer, and what takes longest begins first
+    stiff_first = sorted(strengths, key=lambda key: not strengths[key][0].above)
+    tested: dict[tuple[str, str], Limit | None] = {}
     tell = staged(progress, "what is ruled out", len(strengths))
 
     def test() -> None:
         with workers(jobs, deadline) as pool:
             estimator, base = next(iter(pool.map(lambda final: _base(found, final), [final])))
 
-            def limit(cases: Sequence[_Case]) -> Limit | None:
-                tell(f"limit of {cases[0].variant.effect}")
-                return _limit(estimator, base, cases)
+            def limit(key: tuple[str, str]) -> None:
+                tell(f"limit of {key[0]}")
+                tested[key] = _limit(estimator, base, strengths[key])
 
-            for each in pool.map(limit, strengths.values()):
-                tested.append(each)
+            for _ in pool.map(limit, stiff_first):
+                pass
 
     deadline.attempt(test, None)
-    untested = dict.fromkeys(effect for effect, _ in list(strengths)[len(tested) :])
-    return Limits([each for each in tested if each is not None], list(untested))
+    set_by = [limit for key in strengths if (limit := tested.get(key)) is not None]
+    missing = dict.fromkeys(effect for effect, parameter in strengths if (effect, parameter) not in tested)
+    return Limits(set_by, list(missing))
 
 
 def _limit(estimator: Estimator, base: Fit, cases: Sequence[_Case]) -> Limit | None:

@@ -67,6 +67,7 @@ class Search:
         self.progress = progress
         self.drifts = drifting(nominal)
         self.whole = Estimator(data, nominal)
+        self.alone = Estimator(data, nominal, pool.map)
         self.first_part = Estimator(data.cut(FIRST_PART * data.scales.time), nominal)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
@@ -110,6 +111,8 @@ class Search:
                 self.refine(self.of_size(size + 1))
             if self._complete(size + 1) or self._likeliest_accounts_for_all():
                 return
+            if not self.resigned and self._drifts_expanded(seeds):
+                return
             if not had_resigned:
                 self.refine(self.of_size(size))
             best = self.preferred(size)
@@ -125,6 +128,21 @@ class Search:
             self.expand(seed)
             if self._wants_refinement(best, size + 1):
                 self.refine(self.of_size(size + 1))
+
+    def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
+        """Expand those of the `seeds` that only drift, before anything dear is done; whether that is the end.
+
+        An effect beside a drift is more frequent than two effects, and found in a tenth of the time.
+        """
+        for seed in seeds:
+            size = seed.explanation.size + 1
+            if not seed.explanation.variants:
+                self.expand(seed)
+                if self._stopped_early(size):
+                    self.refine(self.of_size(size))
+                if self._complete(size) or self.exhausted:
+                    return True
+        return False
 
     def _wants_refinement(self, best: Fit, size: int) -> bool:
         """Whether fits of a `size` grown from the `best` smaller one should be refined now.
@@ -244,13 +262,20 @@ class Search:
         chosen = [fit for fit in fits if _near(fit, best)]
         if not adequate(best) and best.explanation.variants and (jumps(best.explanation) or best.ratio < NEARLY):
             chosen.append(best)
-        chosen = sorted(chosen, key=lambda fit: fit.chi2)[:REFINED]
-        list(self.pool.map(self._refine, chosen))
+        chosen = [fit for fit in sorted(chosen, key=lambda fit: fit.chi2)[:REFINED] if not fit.refined]
+        if len(chosen) == 1:
+            self._refine_alone(chosen[0])
+        else:
+            list(self.pool.map(partial(self._refine, self.whole), chosen))
 
-    def _refine(self, fit: Fit) -> None:
+    def _refine_alone(self, fit: Fit) -> None:
+        """Search other local minima of one fit, on all cores."""
         if not fit.refined:
-            self.progress(f"{fit.explanation.label}, other local minima")
-            self.fits[fit.explanation] = refined(self.whole, fit)
+            self._refine(self.alone, fit)
+
+    def _refine(self, estimator: Estimator, fit: Fit) -> None:
+        self.progress(f"{fit.explanation.label}, other local minima")
+        self.fits[fit.explanation] = refined(estimator, fit)
 
     def preferred(self, largest: int | None = None) -> Fit:
         """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects."""
@@ -279,18 +304,19 @@ class Search:
         """The preferred explanation after each of its parts has been fitted again from its values.
 
         A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins: from the
-        lowest of the larger one's minima, since from beside it the smaller one may stop again. So does one with a drift
-        in the place of two of its quantities, or of an effect. Whichever is preferred then has to stand the same.
+        lowest of the larger one's minima, since from beside it the smaller one may stop again (one that leaves nothing
+        is at its lowest). So does one with a drift in the place of two of its quantities, or of an effect. Whichever
+        is preferred then has to stand the same.
         """
         while (best := self.preferred()).explanation not in self.stood:
             self.stood.add(best.explanation)
-            if best.explanation.size > 1 and jumps(best.explanation):
-                self._refine(best)
+            if best.explanation.size > 1 and jumps(best.explanation) and not accounts_for_all(best, self.data):
+                self._refine_alone(best)
                 best = self.fits[best.explanation]
             for quantity in quantities(best.explanation):
                 smaller = self.add(without(best.explanation, quantity), best.values)
                 if _near(smaller, best):
-                    self._refine(smaller)
+                    self._refine_alone(smaller)
             for simpler in (_smaller(best.explanation, self.drifts), _simpler(best.explanation, self.drifts)):
                 self.refine(list(self.pool.map(partial(self.add, start=best.values), simpler)))
         return best

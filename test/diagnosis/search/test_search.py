@@ -78,11 +78,15 @@ class Grown(Search):
         super().__init__(data, NOMINAL, pool, beam=beam)
         self.ratios = ratios
         self.seeds: list[Explanation] = []
+        self.before_ripples: list[Explanation] = []
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
         return self.keep(made_up(explanation, self.ratios.get(explanation, 9.0), NOMINAL))
 
     def expand(self, seed: Fit) -> list[Fit]:
+        if seed.explanation in self.expanded:
+            return []
+        self.expanded.add(seed.explanation)
         self.seeds.append(seed.explanation)
         self.tried += 1
         larger = (e for e in self.ratios if e.size == seed.explanation.size + 1)
@@ -91,14 +95,14 @@ class Grown(Search):
     def refine(self, fits: object) -> None:
         pass
 
-    def _refine(self, fit: object) -> None:
+    def _refine_alone(self, fit: object) -> None:
         pass
 
     def _fit_most_promising(self, seeds: object) -> None:
         pass
 
     def _fit_ripples(self, seeds: object) -> None:
-        pass
+        self.before_ripples = self.before_ripples or [*self.seeds]
 
     def _likeliest_accounts_for_all(self) -> bool:
         self.resigned = self.beam.resigns
@@ -126,6 +130,7 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
     found = Grown(short, pool, ratios, Beam(width=1, depth=2))
     found.run()
     assert [seed for seed in found.seeds if seed.size == 1] == [*drifts, ONES[0]]
+    assert found.before_ripples == [NOTHING, *drifts]
 
 
 def test_a_budget_ends_the_growth_within_a_size(short: Data, pool: Executor) -> None:
