@@ -103,11 +103,16 @@ class Search:
     def _grow(self, best: Fit) -> None:
         """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
         size = best.explanation.size
+        if size and adequate(best):
+            self._refine_alone(best)
+            if accounts_for_all(self.fits[best.explanation], self.data):
+                return
         seeds = self._seeds(best)
         if len(seeds) > 1:
             had_resigned = self.resigned
             self._fit_most_promising(seeds)
-            if self._stopped_early(size + 1):
+            leading = self.best_of_size(size + 1)
+            if leading is not None and jumps(leading.explanation) and not complete(leading):
                 self.refine(self.of_size(size + 1))
             if self._complete(size + 1) or self._likeliest_accounts_for_all():
                 return
@@ -231,7 +236,10 @@ class Search:
         return [candidate for candidate in found if candidate.explanation not in self.fits]
 
     def _race(self, candidates: Sequence[Candidate], most: int | None = None) -> list[Fit]:
-        """Whole fits of the candidates that come out ahead."""
+        """Whole fits of the candidates that come out ahead.
+
+        One that had accounted for the samples it raced on, and not for all, has stopped in a local minimum since.
+        """
         if not candidates:
             return []
         self.tried += len(candidates)
@@ -239,7 +247,14 @@ class Search:
         known = self.best_of_size(candidates[0].explanation.size)
         leading = dict.fromkeys((self.whole, self.first_part), known.ratio if known else np.inf)
         ahead = winners(candidates, leading, self.pool, self.progress, most)
-        return list(self.pool.map(lambda fit: self.add(fit.explanation, fit.values), ahead))
+        fits = list(self.pool.map(lambda fit: self.add(fit.explanation, fit.values), ahead))
+        stopped = [
+            fit
+            for brief, fit in zip(ahead, fits, strict=True)
+            if adequate(brief) and jumps(fit.explanation) and not adequate(fit)
+        ]
+        self.refine(stopped)
+        return fits
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
         """Fit an explanation and keep it if it is the best of its kind so far."""
