@@ -371,8 +371,9 @@ and by how many kelvin. 50 K pass.
 
 ## Nothing wrong with the signals
 
-A rotor that creeps over its poles tells little of its input; with a coarse converter, a lag or a play put in, 5 of 24
-such recordings are blamed wrongly: their velocities no longer correlate by a half.
+A rotor that creeps over its poles moves at other moments than a model without them. There the torques along the motion
+are held against those of the input: inertia, friction and what repeats itself with every turn have to make up half of
+their variation, as large as described. Within a single turn any smooth input of that size passes.
 
 | recordings | n | blamed |
 |---|---|---|

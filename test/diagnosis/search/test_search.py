@@ -11,6 +11,7 @@ from support.recordings import NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.search import search as module
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.scored import Scored
+from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import TIED
 from pierburg_ros.diagnosis.search.supported import Beside, Supported
@@ -163,6 +164,38 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     assert empty._likeliest_accounts_for_all() == (beside == 1.0)
     assert empty.resigned == resigned
     assert not empty._likeliest_accounts_for_all(), "asked once"
+
+
+@pytest.mark.parametrize(
+    ("one", "raced", "refined"),
+    [("backlash", 1.0, True), ("backlash", 2.0, False), ("sensor_lag", 1.0, False)],
+    ids=["accounted for its samples", "did not", "nothing jumps"],
+)
+def test_what_accounted_for_the_samples_it_raced_on_is_refined(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, one: str, raced: float, refined: bool
+) -> None:
+    """On a part of the recording it left so much, on all of it six noises."""
+    explanation = Explanation((), (Variant(one, ("x",)),))
+    base = empty.keep(made_up(NOTHING, 9.0, NOMINAL))
+    candidate = Candidate(explanation, explanation.variants[0], empty.whole, base, ())
+    monkeypatch.setattr(module, "winners", lambda *_: [made_up(explanation, raced, NOMINAL)])
+    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, 6.0, NOMINAL)))
+    given: list[Fit] = []
+    monkeypatch.setattr(empty, "refine", given.extend)
+    empty._race([candidate])
+    assert [fit.explanation for fit in given] == ([explanation] if refined else [])
+
+
+def test_a_fit_that_stopped_just_above_the_noise_is_refined_before_more_is_added(short: Data, pool: Executor) -> None:
+    """It accounts for all then, and nothing is added to it."""
+
+    class Refining(Grown):
+        def _refine_alone(self, fit: Fit) -> None:
+            self.keep(made_up(fit.explanation, 0.99, NOMINAL))
+
+    found = Refining(short, pool, {NOTHING: 9.0, ONES[0]: 1.04, PAIRS[0]: 0.98}, Beam(depth=2))
+    assert found.run().explanation == ONES[0]
+    assert found.seeds == [NOTHING]
 
 
 def test_a_drift_gets_its_chance_in_the_place_of_one_of_two_effects(short: Data, pool: Executor) -> None:
