@@ -133,6 +133,11 @@ class Parameter(parameter.Parameter):
     dated: bool = False
     """Whether it tells when something happened in one recording, and not what the actuator is."""
 
+    @property
+    def moment(self) -> bool:
+        """Whether it is a moment of one recording."""
+        return self.dated and self.unit == "s"
+
     def scale(self, scales: Scales) -> float:
         """What is large for it [its unit] in an actuator with these `scales`."""
         return scales.of_unit(self.measure or self.unit)

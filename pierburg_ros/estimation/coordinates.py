@@ -155,7 +155,7 @@ def _axis_of_base(name: str, nominal: Model) -> Axis:
 
 def _axis_of_effect(name: str, nominal: Model, duration: float) -> Axis:
     p = DECLARED[name]
-    if p.dated and p.unit == "s":
+    if p.moment:
         return Axis(duration, False, 0.0, 1.0, p.minimum, p.maximum, 0.001)
     scale, (low, high) = p.scale(nominal.scales), p.plausible
     lowest, highest = p.searched or (-math.inf, math.inf)

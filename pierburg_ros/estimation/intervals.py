@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import WHEN
 from pierburg_ros.estimation.least_squares import BRIEF, Solution
 from pierburg_ros.estimation.likelihood import SURE, TIED
 from pierburg_ros.estimation.slopes import FINE, sharp
@@ -61,7 +62,8 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
     A first interval is that of the covariance. Where events jump with the values, the slope at the fit is that of a
     local minimum and the interval too short: each end is therefore moved on while the others, fitted again, keep chi2
     within what 95 % allows (profile likelihood; Murphy and van der Vaart, On Profile Likelihood, J. Am. Stat. Assoc.
-    95, 2000).
+    95, 2000). The cost has steps along a moment, since it counts for nothing while the shaft stands still: its interval
+    reaches at least to where the step of the fit ends.
     """
     names = fit.explanation.names
     if not names:
@@ -71,11 +73,13 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
     jumps = any(EFFECT[effect].jumps for effect in fit.explanation.effects)
     limit = fit.chi2 + (TIED if jumps else SURE**2) * fit.spread
     coordinates = estimator.coordinates(fit.explanation)
-    sides = [
-        (place, side * (_plateau(estimator, fit, place, side, limit) if unknown else float(reach[place])))
-        for place, unknown in enumerate(known.undetermined)
-        for side in (-1.0, 1.0)
-    ]
+
+    def first(place: int, side: float) -> float:
+        if known.undetermined[place] or _is_moment(names[place]):
+            return _plateau(estimator, fit, place, side, limit)
+        return float(reach[place])
+
+    sides = [(place, side * first(place, side)) for place in range(len(names)) for side in (-1.0, 1.0)]
     ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, jumps), sides)
     allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
     result = {}
@@ -88,20 +92,31 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
 
 
 def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: float) -> float:
-    """How far a quantity without a slope moves alone until chi2 passes the `limit`, to a factor of two.
+    """How far a quantity moves alone until chi2 passes the `limit`, to the step with which slopes are taken.
 
     At most to its bound. A load may begin at any moment while the shaft stands still.
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = (float(bound[place]) for bound in coordinates.bounds)
-    reach = FINE * (upper - lower)  # where the slope was taken
-    while reach < upper - lower:
+    step = FINE * (upper - lower)
+
+    def allowed(reach: float) -> bool:
         point = fit.solution.point.copy()
         point[place] = np.clip(point[place] + side * reach, lower, upper)
-        if estimator.chi2_at(fit.explanation, coordinates.values(point)) > limit:
-            break
-        reach *= 2.0
-    return reach
+        return estimator.chi2_at(fit.explanation, coordinates.values(point)) <= limit
+
+    inside, outside = 0.0, step
+    while outside < upper - lower and allowed(outside):
+        inside, outside = outside, 2.0 * outside
+    while outside - inside > step:
+        between = 0.5 * (inside + outside)
+        inside, outside = (between, outside) if allowed(between) else (inside, between)
+    return max(inside, step)
+
+
+def _is_moment(name: str) -> bool:
+    """Whether a quantity is a moment: of a change, or when an effect begins or ends."""
+    return name.endswith(WHEN) or (name in DECLARED and DECLARED[name].moment)
 
 
 def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, jumps: bool) -> list[Signal]:

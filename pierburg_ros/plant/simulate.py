@@ -134,13 +134,16 @@ def simulate_switched(
     came: float = 0.0,
     lasting: np.ndarray | None = None,
 ) -> Signal:
-    """`simulate` of `model`, with `after` taking over the running state at `switch_time` [s]."""
+    """`simulate` of `model`, with `after` taking over the running state at the first sample from `switch_time` [s] on.
+
+    So does a plant whose parameters change: they act from its next tick.
+    """
     times = _increasing(sample_times)
     output = np.empty(times.size)
     split = int(np.searchsorted(times, switch_time))
     start = (initial_angle, initial_velocity, initial_acceleration, came)
     state = _begun(model, inputs, times[0], *start, lasting=lasting)
-    for part, first, last in ((model, 0, split), (after, max(split - 1, 0), times.size)):
+    for part, first, last in ((model, 0, min(split + 1, times.size)), (after, split, times.size)):
         if last > first:
             _continue_into(output[first:last], part, state, inputs, times[first:last])
     return output

@@ -59,6 +59,7 @@ def headline(run: Run) -> dict[str, Share]:
         "Effect-free recordings with the right verdict": tally.share(free, lambda r: r["right"]),
         "Drifted parameter named, alone or in a reported tie": tally.share(results, lambda r: r["drift_named"]),
         "Change in mid-recording dated within 0.5 s": tally.share(results, lambda r: r["change_dated"]),
+        "Change in mid-recording within the interval told": tally.share(results, lambda r: r.get("change_held")),
         "One effect that the recording shows: verdict, exact name, tie": tally.share(one, lambda r: r["right"]),
         "of these, open loop": tally.share(one, lambda r: None if r["closed_loop"] else r["right"]),
         "of these, closed loop": tally.share(one, lambda r: r["right"] if r["closed_loop"] else None),

@@ -70,6 +70,7 @@ class Score:
     false_alarm: bool  # an effect claimed where there is none
     drift_named: bool | None
     change_dated: bool | None
+    change_held: bool | None  # the interval told for the moment of a change holds it
     values: tuple[Value, ...]
     windows: float | None
     unseen_ratio: float | None
@@ -177,6 +178,15 @@ def change_dated(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> bool
     return any(abs(change["time"] - when) <= DATE_TOLERANCE for change in diagnosis.get("changes", []))
 
 
+def change_held(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> bool | None:
+    """Whether the interval told for the moment of a change holds it; None where there was no change."""
+    if not truth["changes"]:
+        return None
+    when = truth["changes"][0]["time"]
+    told = [change["time_ci95"] for change in diagnosis.get("changes", []) if change.get("time_ci95")]
+    return any(low <= when <= high for low, high in told)
+
+
 def said(diagnosis: Mapping[str, Any]) -> bool:
     """Whether the diagnosis says that something is wrong with the recording."""
     quality = diagnosis.get("data_quality") or {}
@@ -222,6 +232,7 @@ def score(
         false_alarm=not concealed and not truth["not_in_catalogue"] and bool(named),
         drift_named=drift_named(truth, diagnosis),
         change_dated=change_dated(truth, diagnosis),
+        change_held=change_held(truth, diagnosis),
         values=values_of(truth, diagnosis),
         windows=windows,
         unseen_ratio=None if unseen_rmse is None else unseen_rmse / noise,

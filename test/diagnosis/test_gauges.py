@@ -68,7 +68,9 @@ def said(found: Diagnosis, gauge: Gauge) -> dict[str, Any]:
             )
             for name, p in found.parameters.items()
         },
-        "changes": [(c.parameter, c.time / gauge.time) for c in found.changes],
+        "changes": [
+            (c.parameter, *(when / gauge.time for when in (c.time, *(c.time_ci95 or ())))) for c in found.changes
+        ],
         "windows": [(w.start / gauge.time, w.end / gauge.time, w.share, w.regime) for w in found.locations],
         "regimes": [(r.variable, r.chance, r.share_of_residual, r.share_of_time) for r in found.regimes],
         "errors": [

@@ -16,6 +16,7 @@ from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.likelihood import SURE
+from pierburg_ros.estimation.slopes import FINE
 
 X, Y = "spring_preload", "coulomb_friction"
 WIDE = 1e4
@@ -93,10 +94,10 @@ def test_a_rough_cost_does_not_shorten_the_interval() -> None:
 
 
 def test_a_quantity_without_a_slope_reaches_to_the_ends_of_its_plateau() -> None:
-    """Nothing changes from 0.5 to 3; beyond, chi2 jumps."""
+    """Nothing changes from 0.5 to 3; beyond, chi2 jumps. The ends are found to the step of slopes."""
     low, high = interval(lambda x, y: [100.0 * float(not 0.5 < x < 3.0), y - 1.0], X)
-    assert 0.0 <= low <= 0.5
-    assert 3.0 <= high <= 5.0
+    assert low == pytest.approx(0.5, abs=3.0 * FINE * WIDE)
+    assert high == pytest.approx(3.0, abs=3.0 * FINE * WIDE)
 
 
 def test_a_quantity_that_nothing_depends_on_reaches_to_its_bounds() -> None:

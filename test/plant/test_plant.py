@@ -53,14 +53,17 @@ def test_model_changes_while_the_state_stays() -> None:
 
 
 def test_model_changes_within_a_run_at_its_time() -> None:
+    """Between two samples of a movement: it acts from the second one, as a plant whose model is replaced."""
     time, duty = rich_duty(4.0)
     after = NOMINAL.with_values({"armature_resistance": 5.0})
-    switched = simulate_switched(NOMINAL, after, 2.0, Inputs(time, duty), time)
+    moving = int(np.argmax(np.abs(np.diff(simulate(NOMINAL, Inputs(time, duty), time)))))
+    when = 0.5 * float(time[moving - 1] + time[moving])
+    switched = simulate_switched(NOMINAL, after, when, Inputs(time, duty), time)
     plant = Plant(NOMINAL)
     expected = []
     for k in range(time.size):
         expected.append(plant.measure())
-        if k + 1 == np.searchsorted(time, 2.0):
+        if k == moving:
             plant.model = after
         plant.advance(float(duty[k]), float(time[min(k + 1, time.size - 1)] - time[k]))
     assert np.abs(switched - expected).max() < 1e-9

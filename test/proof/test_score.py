@@ -159,6 +159,14 @@ def test_a_change_is_dated_within_half_a_second(found, dated):
     assert score(truth, answer, None, None).change_dated is dated
 
 
+@pytest.mark.parametrize(("told", "held"), [((29.0, 33.0), True), ((31.3, 33.0), False), (None, False)])
+def test_the_interval_told_for_a_change_holds_its_moment_or_does_not(told, held):
+    change = {"parameter": "armature_resistance", "time": 31.2, "before": 4.1, "after": 5.0}
+    truth = changed(TRUTH, kind="change", verdict="parameter_drift", effects=[], changes=[change])
+    answer = changed(ANSWER, effects=[], verdict="parameter_drift", changes=[{**change, "time_ci95": told}])
+    assert score(truth, answer, None, None).change_held is held
+
+
 def test_no_answer_is_a_failure_with_its_reason():
     result = failed(TRUTH, "the diagnosis ended with status 1")
     assert not result.right and result.failure == "the diagnosis ended with status 1"

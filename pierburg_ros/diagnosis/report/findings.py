@@ -47,7 +47,6 @@ from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Kalman
-from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
 from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
@@ -57,7 +56,7 @@ def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits
     """The whole document; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
-    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion.final), not_testable(found, conclusion)
+    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(found, conclusion)
     short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
     text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
@@ -167,13 +166,14 @@ def _in_ratio(actuator: Actuator, name: str) -> list[list[str]]:
     return [list(fixed)] if fixed else []
 
 
-def changes(chosen: Fit) -> list[Change]:
-    """The parameter that changed in the middle of the recording, if one did."""
-    name = chosen.explanation.changed
+def changes(conclusion: Conclusion) -> list[Change]:
+    """The parameter that changed in the middle of the recording, if one did, and when: between which moments."""
+    name = conclusion.final.explanation.changed
     if name is None:
         return []
-    values = chosen.values
-    return [Change(parameter=name, time=values[name + WHEN], before=values[name], after=values[name + AFTER])]
+    values, known = conclusion.final.values, conclusion.estimates.get(name + WHEN)
+    time, ends = (0.5 * (known.low + known.high), (known.low, known.high)) if known else (values[name + WHEN], None)
+    return [Change(parameter=name, time=time, time_ci95=ends, before=values[name], after=values[name + AFTER])]
 
 
 def fit_quality(found: Found, conclusion: Conclusion) -> FitQuality:

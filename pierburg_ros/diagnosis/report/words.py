@@ -135,7 +135,8 @@ def summary(
         if p.drifted
     ]
     dated = [
-        f"{c.parameter.replace('_', ' ')} changes at {c.time:.3g} s from {c.before:.4g} to {c.after:.4g}"
+        f"{numbers.words(c.parameter)} changes {_when(c)} from {c.before:.4g} to {c.after:.4g}"
+        + _or(parameters[c.parameter].indistinguishable_from)
         for c in changes
     ]
     if verdict == "consistent":
@@ -223,6 +224,12 @@ def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
     means += [EFFECT[item].record for item in (name, *tie) if item in EFFECT]
     text = f"To tell {numbers.words(name)} from {_listed(tie)}: {'; or '.join(dict.fromkeys(means)) or HELD}."
     return f"{text} {HOLD}" if "measure" in text else text
+
+
+def _when(change: Change) -> str:
+    """The moment of a change, or the two between which it lies, where three digits tell them apart."""
+    low, high = (f"{end:.3g}" for end in change.time_ci95 or (change.time, change.time))
+    return f"at {low} s" if low == high else f"between {low} and {high} s"
 
 
 def _or(ties: Sequence[Sequence[str]]) -> str:

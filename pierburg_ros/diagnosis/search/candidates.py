@@ -45,16 +45,18 @@ def jumps(explanation: Explanation) -> bool:
     return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
-def expansions(base: Fit, data: Data, drifts: tuple[str, ...]) -> dict[Explanation, tuple[Addition, list[Start]]]:
-    """Every explanation with one quantity more than that of `base`: what is added, and where its search may start.
+def may_change(explanation: Explanation, data: Data) -> bool:
+    """Whether a change in the middle is looked for beside an explanation: beside drifts, and in single recordings."""
+    return not explanation.variants and explanation.changed is None and len(data.runs) == 1
 
-    A change in the middle of the recording is looked for alone, and in single recordings.
-    """
+
+def expansions(base: Fit, data: Data, drifts: tuple[str, ...]) -> dict[Explanation, tuple[Addition, list[Start]]]:
+    """Every explanation with one quantity more than that of `base`: what is added, and where its search may start."""
     seed = base.explanation
     additions: list[tuple[Explanation, Addition, list[Start]]] = []
     for name in drifts:
         additions.append((Explanation((*seed.drifted, name), seed.variants, seed.changed), name, [base.values]))
-        if not seed.variants and seed.changed is None and len(data.runs) == 1:
+        if may_change(seed, data):
             additions.append((Explanation(seed.drifted, seed.variants, name), name, []))
     for variant, starts in starts_of(data, base.model).items():
         additions.append((seed.plus(variant), variant, starts))

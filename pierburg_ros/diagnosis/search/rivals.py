@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import replace
 
-from pierburg_ros.diagnosis.search.candidates import jumps
+from pierburg_ros.diagnosis.search.candidates import jumps, may_change
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import alike, complete, gains_enough
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, quantities, without
+from pierburg_ros.estimation.explanation import (
+    AFTER,
+    WHEN,
+    Explanation,
+    Quantity,
+    Variant,
+    canonical,
+    quantities,
+    without,
+)
 
 FADING = (0.75, 0.5, 0.25, 0.0)
 """Shares of an effect's strength at which what may stand for it is fitted in turn. Work: one brief fit each; in one
@@ -22,6 +32,7 @@ step the others would have to take over all of it, and events would jump. Not va
 def fit_rivals(search: Search, best: Fit) -> None:
     """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters.
 
+    A load that never ends is a parameter that changed when it began.
     Where events jump and something is left, other drifts start from the values of `best` as well.
     """
     limit = alike(best)
@@ -29,6 +40,7 @@ def fit_rivals(search: Search, best: Fit) -> None:
         rest = without(best.explanation, quantity)
         search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
         rivals = list(_by_parameters(rest, search.drifts, 2 if isinstance(quantity, Variant) else 1))
+        rivals += _by_a_change(rest, quantity, search)
         for rival in rivals:
             known = search.fits.get(rival)
             if isinstance(quantity, Variant) and (known is None or known.misfit > limit):
@@ -49,6 +61,22 @@ def _by_parameters(rest: Explanation, drifts: tuple[str, ...], most: int) -> Ite
         key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), drifts)
         if key is not None:
             yield key
+
+
+def _by_a_change(rest: Explanation, quantity: Quantity, search: Search) -> list[Explanation]:
+    """`rest` with the parameter that may have changed at the moment at which an effect begins, if it has one."""
+    if not isinstance(quantity, Variant) or not may_change(rest, search.data):
+        return []
+    constant = EFFECT[quantity.effect].constant_part
+    if constant is None or _beginning(quantity) is None or constant[1] in rest.drifted:
+        return []
+    return [replace(rest, changed=constant[1])]
+
+
+def _beginning(variant: Variant) -> str | None:
+    """Dotted name of the moment from which an effect acts, where that is searched."""
+    moments = (p.name for p in EFFECT[variant.effect].parameters if p.moment and p.name in variant.free)
+    return next((f"{variant.effect}.{name}" for name in moments), None)
 
 
 def _take_over(search: Search, explanation: Explanation, fading: Variant, best: Fit) -> None:
@@ -75,11 +103,16 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
 
 
 def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[dict[str, float]]:
-    """Values at which a base parameter is what the effect was all the time, if there is such a one."""
+    """Values at which a base parameter is what the effect was, all the time or from its start, if there is one."""
     constant = EFFECT[fading.effect].constant_part
-    if constant is not None and constant[1] in explanation.drifted:
-        own, base = constant
-        yield {**best.values, base: best.values[base] + best.values[f"{fading.effect}.{own}"]}
+    if constant is None:
+        return
+    own, base = constant
+    moved = best.values[base] + best.values[f"{fading.effect}.{own}"]
+    if base in explanation.drifted:
+        yield {**best.values, base: moved}
+    if base == explanation.changed and (begins := _beginning(fading)):
+        yield {**best.values, base + AFTER: moved, base + WHEN: best.values[begins]}
 
 
 def _faded(variant: Variant, fit: Fit, share: float) -> Variant:

@@ -7,7 +7,7 @@ from support.recordings import NOMINAL
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
-from pierburg_ros.diagnosis.schema import BaseParameter, Effect, Errors, FitQuality, NotTestable
+from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -54,6 +54,23 @@ def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -
     )  # fmt: skip
     said = summary("parameter_drift", [], {"spring_preload": spring}, [], fit, "V")
     assert "instead of 0.1, or coulomb friction, which fit alike. " in said
+
+
+@pytest.mark.parametrize(
+    ("ends", "when"),
+    [((29.35, 34.07), "between 29.4 and 34.1 s"), ((31.71, 31.74), "at 31.7 s"), (None, "at 31.7 s")],
+    ids=["at rest", "moving", "no interval"],
+)
+def test_a_change_is_told_with_the_moments_between_which_it_lies(ends, when) -> None:
+    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.01, final_rmse=0.004)
+    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
+    preload = BaseParameter(
+        nominal=0.29, value=0.29, unit="N.m", ci95=None, identifiable=True, drifted=True,
+        indistinguishable_from=[["external_load"]],
+    )  # fmt: skip
+    change = Change(parameter="spring_preload", time=31.71, time_ci95=ends, before=0.29, after=0.322)
+    said = summary("parameter_drift", [], {"spring_preload": preload}, [change], fit, "V")
+    assert f"spring preload changes {when} from 0.29 to 0.322, or external load, which fit alike. " in said
 
 
 def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:

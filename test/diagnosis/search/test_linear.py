@@ -11,6 +11,7 @@ from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, pr
 from pierburg_ros.estimation.data import all_training, data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.recording import Recording
 
@@ -94,3 +95,5 @@ def test_a_change_is_dated_across_the_steps_of_the_cost(off: float) -> None:
     dated = redated(estimator, beside)
     assert dated.ratio < 1.05
     assert dated.values[name + AFTER] == pytest.approx(true, rel=0.01)
+    when = estimates(estimator, dated)[name + WHEN]
+    assert when.low <= 15.0 <= when.high

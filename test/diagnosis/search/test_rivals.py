@@ -2,14 +2,18 @@
 
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Search
+from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant, quantities, without
+from pierburg_ros.estimation.explanation import AFTER, Explanation, Variant, quantities, without
+from pierburg_ros.estimation.run import Switch
 
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 PLAY = Variant("backlash", ("gap", "motor_friction_share"))
@@ -70,6 +74,23 @@ def test_a_load_that_acts_throughout_is_a_preload(pool: Executor) -> None:
     assert best.values["external_load.torque"] == pytest.approx(0.03, rel=0.02)
     assert other.values["spring_preload"] == pytest.approx(0.29 + best.values["external_load.torque"], rel=1e-3)
     assert other.chi2 == pytest.approx(best.chi2, rel=1e-3)
+
+
+def test_a_load_that_never_ends_is_a_preload_that_changed(pool: Executor) -> None:
+    """A spring that is tightened by 0.03 N.m after 7 s pushes as a load of 0.03 N.m does that begins then."""
+    tightened = NOMINAL.with_values({"spring_preload": 0.32})
+    plain = recording({}, duration=14.0)
+    hall = data_of([plain], NOMINAL).runs[0].simulated(NOMINAL, Switch(tightened, 7.0))
+    noisy = hall + 0.003 * np.random.default_rng(3).standard_normal(hall.size)
+    search = Search(data_on(replace(plain, measured=noisy)), NOMINAL, pool)
+    load = Variant("external_load", ("torque", "start", "end"))
+    truth = {"external_load.torque": 0.03, "external_load.start": 7.0, "external_load.end": 14.0}
+    best = search.add(Explanation((), (load,)), truth)
+    assert best.ratio < 1.05
+    changed = with_rivals(search, best, ()).fits[Explanation(changed="spring_preload")]
+    assert changed.chi2 == pytest.approx(best.chi2, rel=1e-3)
+    assert changed.values["spring_preload" + AFTER] == pytest.approx(0.32, rel=0.01)
+    assert search.preferred() is changed
 
 
 def test_a_drift_has_no_rivals_but_what_may_be_added_without_it(pool: Executor) -> None:
