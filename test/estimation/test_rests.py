@@ -1,5 +1,7 @@
 """Recordings are cut where the shaft rests, and begin again from there."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording
@@ -47,9 +49,13 @@ def test_samples_stay_and_the_truth_fits_between_rests() -> None:
     assert Estimator(cut, NOMINAL).at(STICTION, TRUTH).ratio == pytest.approx(1.0, abs=0.03)
 
 
-def test_between_rests_a_descent_comes_to_the_truth_from_where_it_stops_over_the_whole() -> None:
-    estimator = Estimator(data_on(recording(TRUTH)), NOMINAL)
-    start = {"static_friction.breakaway_torque": 0.25, "static_friction.stribeck_velocity": 0.12}
-    smooth = estimator.between_rests.fit(STICTION, start, forgiving=True)
-    assert estimator.fit(STICTION, start).ratio > 2.0
-    assert estimator.fit(STICTION, smooth.values).ratio < 1.1
+def test_descents_that_begin_between_rests_come_to_the_truth_from_more_starts() -> None:
+    """Of 36 around it: one slip that comes early displaces all that follows."""
+    estimator = Estimator(data_on(recording({**TRUTH, "static_friction.breakaway_torque": 0.26})), NOMINAL)
+    found = {"directly": 0, "between rests": 0}
+    for torque, velocity in product((0.24, 0.25, 0.26, 0.27, 0.28, 0.29), (0.07, 0.08, 0.09, 0.11, 0.12, 0.14)):
+        start = {"static_friction.breakaway_torque": torque, "static_friction.stribeck_velocity": velocity}
+        smooth = estimator.between_rests.fit(STICTION, start, forgiving=True).values
+        for way, begin in (("directly", start), ("between rests", smooth)):
+            found[way] += estimator.fit(STICTION, begin).ratio < 1.1
+    assert found["between rests"] > found["directly"]

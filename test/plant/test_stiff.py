@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.gear.shaft import settled
+from pierburg_ros.plant.motion.events import TOLERANCE
 from pierburg_ros.plant.signal_path import advance
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.load import blurred
@@ -238,3 +239,30 @@ def test_a_shaft_that_falls_away_from_a_motor_at_rest_does_so() -> None:
     output = simulate(pendulum, still, time, -0.5328)
     velocity = (4.275e-4 * math.sin(0.5328) - 7.961e-5) / 10.95
     assert np.abs(output - output[0] - velocity * time).max() < 0.2 * velocity * time[-1]
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.163, 0.12), (0.163, 0.115), (0.2, 0.13), (0.13, 0.163)])
+def test_a_jump_of_the_duty_while_the_shaft_creeps_is_as_exact_as_any_step(before: float, after: float) -> None:
+    """Within 15 us the motor settles on the falling part of the Stribeck curve, and a tick of 2 ms goes on from there.
+
+    From one velocity [rad/s] at which torques balance to about another one, against LSODA.
+    """
+    model = NOMINAL.with_values(
+        {"static_friction.breakaway_torque": 0.2665, "static_friction.stribeck_velocity": 0.059}
+    )
+    start, coulomb = 0.1, model.values["coulomb_friction"]
+
+    def resisting(angle: float, velocity: float) -> float:
+        excess = (0.2665 - coulomb) * math.exp(-((velocity / 0.059) ** 2))
+        return SPRING * angle + PRELOAD + coulomb + excess + CONSTANT**2 * velocity / RESISTANCE
+
+    driving = resisting(start, after)
+    duty = driving * RESISTANCE / (CONSTANT * SUPPLY)
+
+    def motion(_: float, state: np.ndarray) -> tuple[float, float]:
+        return state[1], (driving - resisting(state[0], state[1])) / INERTIA
+
+    time = np.linspace(0.0, 0.002, 21)
+    exact = solve_ivp(motion, (0.0, 0.002), [start, before], "LSODA", time, rtol=1e-12, atol=1e-14).y[0]
+    hall = simulate(model, Inputs(np.array([0.0, 0.002]), np.full(2, duty)), time, start, before)
+    assert np.abs((hall - hall[0]) / SPAN - (exact - start)).max() < TOLERANCE * math.pi / 2.0
