@@ -207,8 +207,8 @@ def slide(p, s, kind, angle, velocity, direction, low, high, line, remaining):
     """Slide for `remaining` [s] or to the next event: time used, angle, velocity, whether at rest, whether at a limit.
 
     The event is the velocity passing zero, or the angle reaching `low` or `high` [rad], where it stays. `line` is the
-    balance of torques now. What it is seen to miss at the end is added, as it grows with the square of time; the step is
-    judged by what that leaves.
+    balance of torques now. What it is seen to miss at the end is added, as it grows with the square of time; the step
+    is judged by what that leaves.
     """
     step, bend = min(_first_step(p, s, line.slope, remaining), turn(p, s, velocity, line)), 0.0
     furthest, enough = finest(p, angle, velocity), least(p, line)
