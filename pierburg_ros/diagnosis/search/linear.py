@@ -12,6 +12,7 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.estimation.least_squares import TOLERANCE
 from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
@@ -92,11 +93,12 @@ def redated(estimator: Estimator, fit: Fit) -> Fit:
     """A fit with the best moment of its change among those around it: the cost has many local minima there.
 
     While the shaft rests the moment of a change hardly counts, so the cost has steps. A step may be lower than the one
-    beside it only once the other values are fitted on it: the next steps on both sides are tried while that gains.
+    beside it only once the other values are fitted on it: the next steps on both sides are tried while that gains as
+    much as a descent goes on for.
     """
     best = estimator.fit(fit.explanation, min(_moments(estimator, fit), key=lambda moment: moment[0])[1])
     best = min(fit, best, key=lambda found: found.chi2)
-    while (moved := _on_next_steps(estimator, best)).chi2 < (1.0 - LEVEL) * best.chi2:
+    while (moved := _on_next_steps(estimator, best)).chi2 < (1.0 - TOLERANCE) * best.chi2:
         best = moved
     return best
 

@@ -17,6 +17,7 @@ from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, s
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.diagnosis.search.supported import Beside, supported
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
@@ -31,6 +32,10 @@ NEARLY = 5.0
 resign; and that of the likeliest over the least up to which it may. Chosen: descents to true explanations were seen to
 stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest at 1.9 times the least, and a search resigned at 1.18
 times the noise whose truth was found 18 s later; not varied."""
+LEADING = 0.1
+"""Share of chi2 that one more quantity leaves at most for its explanation to be grown before others of its size are
+tried. Chosen: what takes nine tenths away is hardly there by chance, and trying it costs a tenth of the others; not
+varied."""
 REFINED = 2
 """How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
 COMPARABLE = 1.5
@@ -72,6 +77,7 @@ class Search:
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
         self.stood: set[Explanation] = set()
+        self.rippled: set[int] = set()
         self.tried = self.waiting = 0
         self.pool = pool
         self.beside: Beside | None = None
@@ -111,10 +117,8 @@ class Search:
         if len(seeds) > 1:
             had_resigned = self.resigned
             self._fit_most_promising(seeds)
-            leading = self.best_of_size(size + 1)
-            if leading is not None and jumps(leading.explanation) and not complete(leading):
-                self.refine(self.of_size(size + 1))
-            if self._complete(size + 1) or self._likeliest_accounts_for_all():
+            self._lead_tried_harder(seeds, size + 1)
+            if self._complete(size + 1) or self._followed(best) or self._likeliest_accounts_for_all():
                 return
             if not self.resigned and self._drifts_expanded(seeds):
                 return
@@ -133,6 +137,31 @@ class Search:
             self.expand(seed)
             if self._wants_refinement(best, size + 1):
                 self.refine(self.of_size(size + 1))
+
+    def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
+        """Descend again to what leads among explanations of a `size`, if its cost has many local minima."""
+        leading = self.best_of_size(size)
+        if leading is None or complete(leading) or not jumps(leading.explanation):
+            return
+        if any(EFFECT[effect].ripple for effect in leading.explanation.effects):
+            self._fit_ripples(seeds)
+        if not self._complete(size):
+            self.refine(self.of_size(size))
+
+    def _followed(self, best: Fit) -> bool:
+        """Grow what leads among the explanations one quantity larger than `best`, if it leaves far less.
+
+        Whether that accounts for all: then nothing else of its size is looked for. Near the noise it may only have
+        stopped too early, or another has.
+        """
+        size = best.explanation.size + 1
+        leading = self.best_of_size(size)
+        if leading is None or size == self.beam.depth:
+            return False
+        if leading.ratio < NEARLY or leading.chi2 > LEADING * best.chi2:
+            return False
+        self.expand(leading)
+        return self._complete(size + 1)
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
         """Expand those of the `seeds` that only drift, before anything dear is done; whether that is the end.
@@ -209,15 +238,21 @@ class Search:
         return min((fit.ratio for fit in list(self.fits.values())), default=np.inf)
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
-        """Fit ripples of the load on top of the `seeds` by the one way that leads to them where the shaft slips."""
+        """Fit ripples of the load on top of the `seeds`, once, by the way that leads to them where the shaft slips."""
+        size = seeds[0].explanation.size + 1
+        if size in self.rippled:
+            return
+        self.rippled.add(size)
         for variant, ripple in ripples(self.whole):
-            if self._complete(seeds[0].explanation.size + 1):
+            if self._complete(size):
                 return
             self.progress(f"{variant.label}, through stretches")
             grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
             bases = {explanation: seed for explanation, seed in grown if explanation is not None}
             fits = through_stretches(self.whole, variant, ripple, bases, self.pool)
-            self.refine([self.keep(fit) for fit in fits])
+            kept = [self.keep(fit) for fit in fits]
+            if not self._complete(size):
+                self.refine(kept)
 
     def expand(self, seed: Fit) -> list[Fit]:
         """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""
