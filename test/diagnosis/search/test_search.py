@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from support.fits import made_up, of_chi2
 from support.recordings import NOMINAL, data_on, recording
@@ -114,6 +115,7 @@ ONES = [
     Explanation((), (Variant(effect, ("x",)),)) for effect in ("sensor_lag", "supply_sag", "pwm_deadband", "backlash")
 ]
 PAIRS = [Explanation(("spring_preload",), one.variants) for one in ONES]
+FRICTION = Explanation(("coulomb_friction",))
 RATIOS = {NOTHING: 9.0, **dict(zip(ONES, (6.0, 6.1, 6.2, 6.3), strict=True)), PAIRS[0]: 2.0}
 
 
@@ -132,6 +134,38 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
     found.run()
     assert [seed for seed in found.seeds if seed.size == 1] == [*drifts, ONES[0]]
     assert found.before_ripples == [NOTHING, *drifts]
+
+
+@pytest.mark.parametrize(("left", "second"), [(8.0, PAIRS[0]), (12.0, ONES[0]), (4.0, ONES[0])])
+def test_what_leads_by_far_is_grown_before_others_of_its_size(
+    short: Data, pool: Executor, left: float, second: Explanation
+) -> None:
+    """By less, or near the noise, where it may only have stopped too early, it waits."""
+    triple = PAIRS[0].plus(ONES[3].variants[0])
+
+    class Leading(Grown):
+        def _fit_most_promising(self, seeds: object) -> None:
+            self.add(PAIRS[0])
+
+    found = Leading(short, pool, {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, PAIRS[0]: left, triple: 0.99}, Beam())
+    assert found.run().explanation == triple
+    assert found.seeds[:2] == [NOTHING, second]
+
+
+@pytest.mark.parametrize(("effect", "grown"), [("cogging_torque", [NOTHING]), ("sensor_lag", [NOTHING, FRICTION])])
+def test_ripples_are_looked_for_at_once_where_one_leads(
+    short: Data, pool: Executor, effect: str, grown: list[Explanation]
+) -> None:
+    """Otherwise drifts are grown before."""
+    pair = Explanation(("spring_preload",), (Variant(effect, ("x",)),))
+
+    class Leading(Grown):
+        def _fit_most_promising(self, seeds: object) -> None:
+            self.add(pair)
+
+    found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, pair: 4.0}, Beam(depth=2))
+    found.run()
+    assert found.before_ripples == grown
 
 
 def test_a_budget_ends_the_growth_within_a_size(short: Data, pool: Executor) -> None:
@@ -190,6 +224,11 @@ def test_a_fit_that_stopped_just_above_the_noise_is_refined_before_more_is_added
     """It accounts for all then, and nothing is added to it."""
 
     class Refining(Grown):
+        def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
+            fit = made_up(explanation, self.ratios.get(explanation, 9.0), NOMINAL)
+            residual = fit.solution.residual + 0.1 * np.roll(fit.solution.residual, 1)
+            return self.keep(replace(fit, solution=replace(fit.solution, residual=residual)))
+
         def _refine_alone(self, fit: Fit) -> None:
             self.keep(made_up(fit.explanation, 0.99, NOMINAL))
 

@@ -68,6 +68,7 @@ def test_white_noise_larger_than_estimated_is_all_there_is_and_structure_is_not(
     assert 1.03 < structured.ratio < noise.ratio < 1.1
     assert adequate(noise) and complete(noise)
     assert not adequate(structured) and not complete(structured)
+    assert accounts_for_all(noise, low) and not accounts_for_all(structured, data)
 
 
 def test_what_only_the_validation_samples_show_is_overlooked() -> None:
