@@ -141,11 +141,11 @@ class Search:
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
         """Descend again to what leads among explanations of a `size`, if its cost has many local minima."""
         leading = self.best_of_size(size)
-        if leading is None or complete(leading) or not jumps(leading.explanation):
+        if leading is None or complete(leading):
             return
         if any(EFFECT[effect].ripple for effect in leading.explanation.effects):
             self._fit_ripples(seeds)
-        if not self._complete(size):
+        if jumps(leading.explanation) and not self._complete(size):
             self.refine(self.of_size(size))
 
     def _followed(self, best: Fit) -> bool:
