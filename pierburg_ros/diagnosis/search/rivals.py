@@ -83,7 +83,8 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
     """Fit an explanation that stands for an effect of `best` by other means, if it keeps up as the effect fades.
 
     In one step the others would have to take over all of it, and events would jump. They would also jump if its other
-    effects gave way meanwhile.
+    effects gave way meanwhile. What takes over may hardly be told apart itself, as resistance and supply are: the first
+    steps are those that the slopes foresee, for damped ones would not come far along such a valley.
     """
     values = best.values
     for start in _at_once(explanation, fading, best):
@@ -93,7 +94,8 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
         effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
         stage = Explanation(explanation.drifted, effects, explanation.changed)
         try:
-            stage_fit = search.first_part.fit(stage, values, ROUNDS)
+            slopes = search.first_part.at(stage, values).solution.jacobian
+            stage_fit = search.first_part.fit(stage, values, ROUNDS, slopes=slopes)
         except InputError:
             continue
         if stage_fit.ratio > NEAR * best.ratio:
