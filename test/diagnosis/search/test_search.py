@@ -136,7 +136,7 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
     assert found.before_ripples == [NOTHING, *drifts]
 
 
-@pytest.mark.parametrize(("left", "second"), [(8.0, PAIRS[0]), (12.0, ONES[0]), (4.0, ONES[0])])
+@pytest.mark.parametrize(("left", "second"), [(14.0, PAIRS[0]), (16.0, ONES[0]), (4.0, ONES[0])])
 def test_what_leads_by_far_is_grown_before_others_of_its_size(
     short: Data, pool: Executor, left: float, second: Explanation
 ) -> None:
@@ -166,6 +166,24 @@ def test_ripples_are_looked_for_at_once_where_one_leads(
     found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, pair: 4.0}, Beam(depth=2))
     found.run()
     assert found.before_ripples == grown
+
+
+def test_what_does_not_account_for_all_ends_no_growth_of_what_is_smaller(short: Data, pool: Executor) -> None:
+    """Three quantities that are likeliest beside a remainder may be known before any pair has been grown."""
+    three, right = PAIRS[0].plus(ONES[3].variants[0]), PAIRS[1].plus(ONES[3].variants[0])
+
+    class Known(Grown):
+        def _likeliest_accounts_for_all(self) -> bool:
+            self.add(three)
+            return False
+
+        def expand(self, seed: Fit) -> list[Fit]:
+            return [self.add(right)] if seed.explanation == PAIRS[1] else super().expand(seed)
+
+    ratios = {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, PAIRS[1]: 20.0, three: 8.0}
+    found = Known(short, pool, ratios, Beam())
+    found.ratios[right] = 0.99
+    assert found.run().explanation == right
 
 
 def test_a_budget_ends_the_growth_within_a_size(short: Data, pool: Executor) -> None:
