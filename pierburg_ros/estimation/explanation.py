@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pierburg_ros.effects import EFFECT
+
 
 @dataclass(frozen=True)
 class Variant:
@@ -67,6 +69,11 @@ class Explanation:
     def plus(self, variant: Variant) -> Explanation:
         """This explanation with one more effect."""
         return Explanation(self.drifted, (*self.variants, variant), self.changed)
+
+
+def jumps(explanation: Explanation) -> bool:
+    """Whether events jump as its values change, so that its cost has many local minima."""
+    return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
 Quantity = str | Variant

@@ -5,15 +5,16 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import DECLARED, EFFECT
+from pierburg_ros.effects import DECLARED
 from pierburg_ros.estimation.covariance import Covariance, covariance_of
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import WHEN
+from pierburg_ros.estimation.explanation import WHEN, jumps
 from pierburg_ros.estimation.least_squares import BRIEF, Solution
 from pierburg_ros.estimation.likelihood import SURE, TIED
 from pierburg_ros.estimation.slopes import FINE, sharp
@@ -65,13 +66,35 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
     95, 2000). The cost has steps along a moment, since it counts for nothing while the shaft stands still: its interval
     reaches at least to where the step of the fit ends.
     """
+    return _profiled(estimator, fit, over)[0]
+
+
+def lowest_with_estimates(estimator: Estimator, fit: Fit, over: Map = map) -> tuple[Fit, dict[str, Estimate]]:
+    """`fit`, or a lower one that the ends of its intervals come upon where events jump, and the `estimates` at it.
+
+    An end is looked for with the other quantities fitted again and again, far along the valley: a way out of a local
+    minimum that descents from around it do not take.
+    """
+    while True:
+        known, allowed = _profiled(estimator, fit, over)
+        if not jumps(fit.explanation):
+            return fit, known
+        costs = over(partial(estimator.chi2_at, fit.explanation), allowed)
+        cost, lowest = min(zip(costs, allowed, strict=True), key=lambda pair: pair[0], default=(np.inf, fit.values))
+        if cost >= fit.chi2 - TIED * fit.repetition:
+            return fit, known
+        fit = estimator.fit(fit.explanation, lowest)
+
+
+def _profiled(estimator: Estimator, fit: Fit, over: Map) -> tuple[dict[str, Estimate], list[dict[str, float]]]:
+    """The `estimates` at a fit, and all values that they allow."""
     names = fit.explanation.names
     if not names:
-        return {}
+        return {}, []
     known = covariance(estimator, fit)[0]
     reach = known.factor * np.sqrt(np.maximum(np.diagonal(known.matrix), 0.0))
-    jumps = any(EFFECT[effect].jumps for effect in fit.explanation.effects)
-    limit = fit.chi2 + (TIED if jumps else SURE**2) * fit.spread
+    rough = jumps(fit.explanation)
+    limit = fit.chi2 + (TIED if rough else SURE**2) * fit.spread
     coordinates = estimator.coordinates(fit.explanation)
 
     def first(place: int, side: float) -> float:
@@ -80,7 +103,7 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
         return float(reach[place])
 
     sides = [(place, side * first(place, side)) for place in range(len(names)) for side in (-1.0, 1.0)]
-    ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, jumps), sides)
+    ends = over(lambda side: _ends(estimator, fit, side[0], side[1], limit, rough), sides)
     allowed = [coordinates.values(point) for point in itertools.chain(*ends)]
     result = {}
     for name in names:
@@ -88,7 +111,7 @@ def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Esti
         value = fit.values[name]
         identifiable = max(high - value, value - low) <= HALF_KNOWN * abs(value)
         result[name] = Estimate(value, min(low, value), max(high, value), identifiable)
-    return result
+    return result, allowed
 
 
 def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: float) -> float:
@@ -119,7 +142,7 @@ def _is_moment(name: str) -> bool:
     return name.endswith(WHEN) or (name in DECLARED and DECLARED[name].moment)
 
 
-def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, jumps: bool) -> list[Signal]:
+def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, rough: bool) -> list[Signal]:
     """Points that an interval must hold: `reach` away along one of the coordinates, then in the valley.
 
     Further out the other quantities are fitted again, as long as chi2 keeps the `limit`. Three starts are tried: where
@@ -146,7 +169,7 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
 
     nowhere = np.zeros(best.size)
     points, valley, reached = [moved(reach, nowhere)], nowhere, 0.0
-    patience = PATIENCE if jumps else 1
+    patience = PATIENCE if rough else 1
     for _ in range(DOUBLINGS):
         there = fitted(reach, valley, 2.0)
         if there.cost <= limit:
@@ -157,7 +180,7 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
         if patience == 0 or not lower[place] < there.point[place] < upper[place]:
             break
         reach *= 2.0
-    if jumps and reached != 0.0 and patience == 0:
+    if rough and reached != 0.0 and patience == 0:
         there = fitted(HALF_WAY * reached, valley, HALF_WAY)
         points += [there.point] if there.cost <= limit else []
     return points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
-from pierburg_ros.effects import EFFECT, EFFECTS, Effect
+from pierburg_ros.effects import EFFECTS, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
@@ -38,11 +38,6 @@ def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
                 effect.in_units(start, model.scales) for start in starts
             ]
     return found
-
-
-def jumps(explanation: Explanation) -> bool:
-    """Whether events jump as its values change, so that its cost has many local minima."""
-    return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
 def may_change(explanation: Explanation, data: Data) -> bool:

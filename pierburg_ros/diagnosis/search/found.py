@@ -11,7 +11,6 @@ import numpy as np
 from scipy.linalg import qr
 
 from pierburg_ros.deadline import Deadline
-from pierburg_ros.diagnosis.search.candidates import jumps
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Beam, Search
 from pierburg_ros.diagnosis.search.selection import adequate, overlooks
@@ -19,8 +18,8 @@ from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.estimation.explanation import Explanation, jumps
+from pierburg_ros.estimation.intervals import Estimate, lowest_with_estimates
 from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
@@ -149,7 +148,7 @@ def _last_values(found: Search, chosen: Fit, jobs: int | None, deadline: Deadlin
     with workers(jobs, deadline) as pool:
         if jumps(fit.explanation) and not chosen.refined:
             fit = next(iter(pool.map(lambda fit: refined(estimator, fit), [fit])))
-        return fit, estimates(estimator, fit, pool.map)
+        return lowest_with_estimates(estimator, fit, pool.map)
 
 
 def _recalibrated(found: Search, pool: Executor) -> Fit:

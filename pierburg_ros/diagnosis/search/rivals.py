@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 
-from pierburg_ros.diagnosis.search.candidates import jumps, may_change
+from pierburg_ros.diagnosis.search.candidates import may_change
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import alike, complete, gains_enough
@@ -20,6 +20,7 @@ from pierburg_ros.estimation.explanation import (
     Quantity,
     Variant,
     canonical,
+    jumps,
     quantities,
     without,
 )

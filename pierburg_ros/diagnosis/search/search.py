@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from pierburg_ros.diagnosis.search.candidates import drifting, jumps
+from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
@@ -20,7 +20,7 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, canonical, quantities, without
+from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, quantities, without
 from pierburg_ros.estimation.refinement import refined
 from pierburg_ros.plant import Model
 
