@@ -17,7 +17,7 @@ from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.nodes.graph import messages
 from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
 from pierburg_ros.nodes.graph.parameters import LiveNode
-from pierburg_ros.nodes.graph.qos import PUBLISHED, SIGNALS
+from pierburg_ros.nodes.graph.qos import PUBLISHED, SIGNALS, STATE
 from pierburg_ros.nodes.graph.running import run
 from pierburg_ros.serial_line.link import Link, Received
 from pierburg_ros.serial_line.port import Port, Unplugged
@@ -47,7 +47,7 @@ class SerialDriverNode(LiveNode):
         self._applied = self.create_publisher(Float64, "applied_duty", PUBLISHED)
         self._joints = self.create_publisher(JointState, "joint_states", PUBLISHED)
         self._supply = self.create_publisher(Float64, "supply_voltage", PUBLISHED)
-        self._enabled = self.create_publisher(Bool, "enabled", PUBLISHED)
+        self._enabled = self.create_publisher(Bool, "enabled", STATE)
         self.create_subscription(Float64, "duty", self._on_duty, SIGNALS)
         self.open_parameters()
 

@@ -21,9 +21,11 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
-from std_msgs.msg import Float64, String
+from std_msgs.msg import Bool, Float64, String
 from std_srvs.srv import SetBool, Trigger
 from support.ros_graph import DEADLINE
+
+from pierburg_ros.nodes.graph.qos import STATE
 
 pytestmark = pytest.mark.ros
 
@@ -113,8 +115,8 @@ def test_what_was_sent_comes_to_disk_by_itself_and_outlasts_a_kill(graph):
 
     def grown():
         nonlocal sent
-        send(graph, range(sent, sent + 20))
-        sent += 20
+        send(graph, range(sent, sent + 200))
+        sent += 200
         return path.exists() and path.stat().st_size > 20_000
 
     graph.until(grown, "messages on disk")
@@ -171,6 +173,15 @@ def test_any_installed_type_and_the_past_of_latched_topics(graph):
     found = messages(graph.folder / "run.mcap")
     assert [m.data for topic, m in found if topic == "/description"] == ["a valve"]
     assert next(m for topic, m in found if topic == "/imu").orientation_covariance[0] == 1.0
+
+
+def test_a_bridge_that_was_open_before_is_recorded_as_open(graph):
+    graph.node.create_publisher(Bool, "enabled", STATE).publish(Bool(data=False))
+    process = recorder(graph, "output:=run.mcap")
+    path = graph.folder / "run.mcap"
+    graph.until(lambda: path.exists() and so_far(path)["/enabled"], "the state of the bridge")
+    graph.ended(process)
+    assert values(path, "/enabled") == [False]
 
 
 def test_parameter_values_stand_in_the_file_for_people(graph):

@@ -11,6 +11,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 from support.simulated_device import DeviceOnPty, SimulatedDevice
 
+from pierburg_ros.nodes.graph.qos import STATE
+
 pytestmark = pytest.mark.ros
 
 
@@ -66,7 +68,7 @@ def test_the_time_out_of_the_device_is_told(graph, line):
 
 def test_silence_and_reset_are_told(graph, line):
     graph.watch("/diagnostics", DiagnosticArray)
-    graph.watch("enabled", Bool)
+    graph.watch("enabled", Bool, STATE)
     graph.start("serial_driver", f"port:={line.path}")
     graph.until(lambda: graph.received["enabled"], "the device")
     line.silent = True

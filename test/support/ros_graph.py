@@ -17,6 +17,7 @@ from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomic
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter, parameter_value_to_python
+from rclpy.qos import QoSProfile
 
 STOP = signal.SIGINT
 DEADLINE = 180.0
@@ -70,14 +71,14 @@ class Graph:
         self._processes.append(process)
         return process
 
-    def watch(self, topic: str, kind: type) -> list[Any]:
+    def watch(self, topic: str, kind: type, profile: QoSProfile | int = KEPT) -> list[Any]:
         """The growing list of messages on a topic."""
 
         def take(message: Any, info: dict[str, int]) -> None:
             self.received[topic].append(message)
             self.stamps[topic].append(info)
 
-        self._subscriptions.append(self.node.create_subscription(kind, topic, take, KEPT))
+        self._subscriptions.append(self.node.create_subscription(kind, topic, take, profile))
         return self.received[topic]
 
     def until_connected(self) -> None:

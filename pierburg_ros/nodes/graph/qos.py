@@ -16,6 +16,9 @@ each of four topics took 24 MB."""
 PUBLISHED = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.RELIABLE)
 """Publishing them: kept for a recorder that a busy machine holds up."""
 
+STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""What is said only when it changes: a reader that comes later gets the last one."""
+
 COMMANDS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 """Setpoints and parameters sent by a person or a script."""
 

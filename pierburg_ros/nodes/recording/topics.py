@@ -14,7 +14,7 @@ from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.numbering import Numbering
-from pierburg_ros.nodes.core.recorder_parameters import DEFAULT_TOPICS
+from pierburg_ros.nodes.core.recorder_parameters import BOOL, DEFAULT_TOPICS
 from pierburg_ros.nodes.graph.qos import RECORDED, described
 from pierburg_ros.nodes.recording.definitions import message_class, type_hash
 from pierburg_ros.nodes.recording.file import Topic
@@ -74,7 +74,8 @@ class RecordedTopics:
             offers = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
             self._publishers[name] = len(offers)
             if kinds and offers:
-                self._subscribe(name, kinds[0], profile_for(offers, keeps_history=known is None))
+                is_wanted = known in (None, BOOL)  # A state holds on; the past of the log belongs to other runs.
+                self._subscribe(name, kinds[0], profile_for(offers, keeps_history=is_wanted))
 
     def take(self) -> list[Received]:
         """All that has arrived, topic by topic."""
