@@ -24,6 +24,7 @@ from pierburg_ros.estimation.explanation import (
     quantities,
     without,
 )
+from pierburg_ros.plant import Model
 
 FADING = (0.75, 0.5, 0.25, 0.0)
 """Shares of an effect's strength at which what may stand for it is fitted in turn. Work: one brief fit each; in one
@@ -68,10 +69,18 @@ def _by_a_change(rest: Explanation, quantity: Quantity, search: Search) -> list[
     """`rest` with the parameter that may have changed at the moment at which an effect begins, if it has one."""
     if not isinstance(quantity, Variant) or not may_change(rest, search.data):
         return []
-    constant = EFFECT[quantity.effect].constant_part
+    constant = _constant_part(quantity, search.nominal)
     if constant is None or _beginning(quantity) is None or constant[1] in rest.drifted:
         return []
     return [replace(rest, changed=constant[1])]
+
+
+def _constant_part(variant: Variant, model: Model) -> tuple[str, str] | None:
+    """Dotted name of what acts as a change of a base parameter, and that parameter; None where the model has none."""
+    constant = EFFECT[variant.effect].constant_part
+    if constant is None or constant[1] not in model.values:
+        return None
+    return f"{variant.effect}.{constant[0]}", constant[1]
 
 
 def _beginning(variant: Variant) -> str | None:
@@ -107,11 +116,11 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
 
 def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[dict[str, float]]:
     """Values at which a base parameter is what the effect was, all the time or from its start, if there is one."""
-    constant = EFFECT[fading.effect].constant_part
+    constant = _constant_part(fading, best.model)
     if constant is None:
         return
     own, base = constant
-    moved = best.values[base] + best.values[f"{fading.effect}.{own}"]
+    moved = best.values[base] + best.values[own]
     if base in explanation.drifted:
         yield {**best.values, base: moved}
     if base == explanation.changed and (begins := _beginning(fading)):

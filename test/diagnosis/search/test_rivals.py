@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.estimation.data import data_of
+from pierburg_ros.estimation.data import data_of, in_parts
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import AFTER, Explanation, Variant, quantities, without
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
 
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 PLAY = Variant("backlash", ("gap", "motor_friction_share"))
@@ -113,3 +116,21 @@ def test_another_drift_beside_what_jumps_starts_from_the_best_values(pool: Execu
     assert best.ratio > 10.0
     other = with_rivals(search, best, ("spring_stiffness", "spring_preload")).fits
     assert other[Explanation(("spring_preload",), (stiction,))].ratio < 1.5
+
+
+def test_a_load_on_what_has_no_spring_is_no_preload(pool: Executor) -> None:
+    """A pendulum, steps of torque for 8 s, and from 4 s on something that pushes with 0.1 N.m."""
+    pendulum = Model.nominal(read_actuator("ak80"))
+    truth = {"external_load.torque": 0.1, "external_load.start": 4.0, "external_load.end": 8.0}
+    random = np.random.default_rng(5)
+    time = np.arange(0.0, 8.0, 0.004)
+    torque = random.uniform(-0.6, 0.6, 10)[(time / 0.8).astype(int)]
+    angle = simulate(pendulum.with_values(truth), Inputs(time, torque), time)
+    noisy = angle + 0.001 * random.standard_normal(time.size)
+    pushed = Recording("pushed.csv", "position", time, noisy, Channel(time, torque), input="torque")
+    search = Search(in_parts(data_of([pushed], pendulum)), pendulum, pool)
+    load = Variant("external_load", ("torque", "start", "end"))
+    best = search.add(Explanation((), (load,)), truth)
+    assert best.ratio < 1.05
+    rivals = with_rivals(search, best, ("coulomb_friction",)).fits
+    assert not any(rival.changed for rival in rivals)
