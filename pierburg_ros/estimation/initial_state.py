@@ -159,6 +159,12 @@ def first_rest(measured: Signal, noise: float) -> int | None:
     return sample + EVEN * (int(np.argmax(rests)) + 1) if rests.any() else None
 
 
+def keeps_still(time: Signal, measured: Signal, noise: float) -> bool:
+    """Whether `EVEN` successive samples are those of a shaft that rests; fewer say nothing."""
+    windows = _windows(measured)
+    return bool(_even(windows, SLOW * noise, noise).all() and windows.size) and not _slopes(time, measured, noise)
+
+
 def approach(before: Signal | None, level: float, noise: float) -> float:
     """Whether what was measured `before` a rest at a `level` rose (+1) or fell (-1) to it; 0 where that is not seen."""
     if before is None:

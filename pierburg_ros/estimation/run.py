@@ -92,7 +92,7 @@ class Run:
     def part(self, kept: slice) -> Run:
         """Some successive samples of the run."""
         time, measured = self.time[kept], self.measured[kept]
-        again = self.shooting and Shooting.of(time, measured, self.shooting.length)
+        again = self.shooting and Shooting.of(time, measured, self.shooting.length, self.quantity)
         return replace(
             self,
             time=time,
@@ -165,7 +165,7 @@ def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording
         recording = from_standstill(recording, model)
     else:
         length = stretch_length(recording.time, recording.measured, recording.quantity)
-        shooting = Shooting.of(recording.time, recording.measured, length)
+        shooting = Shooting.of(recording.time, recording.measured, length, recording.quantity)
     before = whole.measured[whole.time < recording.time[0]]
     since = (whole.time[0], InitialState.of(whole.time, whole.measured)) if before.size else None
     start = InitialState.of(recording.time, recording.measured, before)

@@ -21,11 +21,11 @@ ROTOR = Model.nominal(read_actuator("odrive"))
 NOISE = 0.001
 
 
-def swung(model: Model, duration: float = 12.0, seed: int = 0) -> Recording:
-    """Steps of torque that carry the pendulum around, 1 mrad of noise."""
+def swung(model: Model, duration: float = 12.0, seed: int = 0, most: float = 2.5) -> Recording:
+    """Steps of torque, 2.5 N.m carry the pendulum around; 1 mrad of noise."""
     random = np.random.default_rng(seed)
     time = np.arange(0.0, duration, 0.004)
-    torque = random.uniform(-2.5, 2.5, int(duration / 0.4) + 1)[(time / 0.4).astype(int)]
+    torque = random.uniform(-most, most, int(duration / 0.4) + 1)[(time / 0.4).astype(int)]
     angle = simulate(model, Inputs(time, torque), time)
     noisy = angle + NOISE * random.standard_normal(time.size)
     return Recording("swing", "position", time, noisy, Channel(time, torque), input="torque")
@@ -56,6 +56,18 @@ def test_the_true_model_leaves_the_noise_though_a_simulation_from_the_start_runs
     alone = simulate(off, Inputs(recording.command.time, recording.command.values), recording.time)
     assert np.abs(recording.measured - alone).max() > 20.0 * NOISE
     assert np.sqrt(np.mean((recording.measured - run.simulated(off)) ** 2)) < 1.5 * NOISE
+
+
+@pytest.mark.parametrize(("most", "seed"), [(0.4, 1), (0.4, 5), (0.4, 14), (0.8, 6), (0.8, 8), (1.2, 8)])
+def test_no_beginning_is_off_where_a_shaft_rests_and_turns_round(most: float, seed: int) -> None:
+    """Small steps of torque on a pendulum that sticks: at the true values every stretch is left at its noise."""
+    recording = swung(PENDULUM, 24.0, seed, most)
+    run = run_of(recording, PENDULUM)
+    assert run.shooting is not None
+    squares = ((recording.measured - run.simulated(PENDULUM)) / NOISE) ** 2
+    counts = np.diff(np.append(run.shooting.first, squares.size))
+    excess = np.add.reduceat(squares - 1.0, run.shooting.first) / np.sqrt(2.0 * counts)
+    assert np.max(excess) < 4.5
 
 
 def test_a_wrong_model_does_not_fit_by_other_beginnings() -> None:
@@ -125,7 +137,7 @@ def test_stretches_begin_with_the_shaft_ahead_of_a_sensor_that_lags():
     time = np.arange(600) * 0.002
     measured = 3.0 * (time - 0.05) + 0.2
     inputs = Inputs(np.zeros(1), np.zeros(1))
-    shooting = Shooting.of(time, measured, 0.2)
+    shooting = Shooting.of(time, measured, 0.2, "position")
     assert shooting.simulated(lagging, inputs, time, measured, "position") == pytest.approx(measured, abs=1e-9)
     # from the first sample on, before any beginning is moved: the shaft is where the sensor will be a lag later
     shown = simulate(lagging, inputs, time, 0.2, 3.0)
@@ -147,5 +159,5 @@ def test_uneven_samples_make_no_stretch_much_longer_than_it_should_be() -> None:
     random = np.random.default_rng(5)
     time = np.cumsum(random.uniform(0.0006, 0.0038, 4000))
     length = 20 * float(np.median(np.diff(time)))
-    first = Shooting.of(time, np.sin(time), length).first
+    first = Shooting.of(time, np.sin(time), length, "position").first
     assert np.max(np.diff(time[first])) < 2.0 * length and np.min(np.diff(first)) >= FEWEST

@@ -43,7 +43,7 @@ from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
-from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
 from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Kalman
@@ -136,14 +136,16 @@ def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
 
 
 def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]:
-    """Every base parameter: nominal, as the chosen explanation has it, and whether it drifted.
+    """Every base parameter, and those of effects that the actuator always has.
 
-    One that something remains beside may be moved without being told from its nominal value: that is no drift.
+    Each nominal, as the chosen explanation has it, and whether it drifted. One that something remains beside may be
+    moved without being told from its nominal value: that is no drift.
     """
     actuator = found.data.actuator
     final = conclusion.final
     result = {}
-    for name in actuator.parameters:
+    for name in dict.fromkeys((*actuator.parameters, *found.drifts)):
+        declared = actuator.parameters[name] if name in actuator.parameters else DECLARED[name]
         known, nominal = conclusion.estimates.get(name), found.nominal.values[name]
         told = known is None or not known.low <= nominal <= known.high
         drifted = (name in final.explanation.drifted and told) or name == final.explanation.changed
@@ -151,7 +153,7 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
         result[name] = BaseParameter(
             nominal=nominal,
             value=final.model.values[name],
-            unit=actuator.shown(actuator.parameters[name].unit),
+            unit=actuator.shown(declared.unit),
             ci95=(known.low, known.high) if known else None,
             identifiable=identifiable,
             drifted=drifted,
