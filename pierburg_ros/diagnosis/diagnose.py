@@ -14,7 +14,7 @@ from pierburg_ros.diagnosis.disturbance.rounding import rounded
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
-from pierburg_ros.diagnosis.remainder.around import supported_around
+from pierburg_ros.diagnosis.remainder.around import goes_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined, unnamed
 from pierburg_ros.diagnosis.report.exhibits import exhibits
@@ -31,7 +31,6 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
-from pierburg_ros.estimation.turn import has_overtones
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
@@ -91,22 +90,16 @@ def examined(
     deadline: Deadline,
 ) -> tuple[Found, Remainder | None]:
     """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
-    single = len(recordings) == 1
-    if has_overtones(data, nominal):
-        # what repeats itself with every turn is read from the balance of torques, not searched for order by order
-        found = search(data, nominal, progress, jobs, Beam(depth=0), deadline)
-        if verdict_on(found.chosen) != "unexplained":
-            return found, None
-        if supported_around(data, nominal, found.recalibrated):
-            return found, _told(found, progress, jobs, deadline)
+    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
+    turning, single = goes_around(data, nominal), len(recordings) == 1
     rest = untouched(data, nominal, recordings) or nominal_elsewhere(data, nominal, recordings)
-    if rest:
+    if rest and not turning:
         # physics comes first
         found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)
         if verdict_on(found.chosen) != "unexplained":
             return found, None
         data = rest
-    found = search(data, nominal, progress, jobs, None, deadline)
+    found = search(data, nominal, progress, jobs, Beam(depth=0) if turning else None, deadline)
     if verdict_on(found.chosen) != "unexplained":
         return found, None
     if single and (doubt := rounded(found, recordings[0])):
@@ -115,18 +108,13 @@ def examined(
             return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
         told = deadline.attempt(partial(unnamed, coarse, jobs, deadline), unexamined(coarse))
         return replace(coarse, data=doubt.said(coarse.data, unsettled=True)), told
-    if single:
+    if single and not turning:
         tell, time = staged(progress, "disturbances"), deadline.part(APART)
         found = time.attempt(partial(apart, found, recordings[0], tell, jobs, time), found)
         if verdict_on(found.chosen) != "unexplained":
             return found, None if unseen_confirm(found) else unexamined(found)
-    return found, _told(found, progress, jobs, deadline)
-
-
-def _told(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Remainder:
-    """What can be said where nothing accounts for all, as far as the time goes."""
     tell = staged(progress, "what remains")
-    return deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
+    return found, deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
 
 
 def unseen_confirm(found: Found) -> bool:

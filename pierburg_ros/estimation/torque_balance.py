@@ -144,11 +144,23 @@ def ahead(inputs: Inputs, lag: float) -> Inputs:
 
 def over_a_turn(model: Model, parts: Sequence[Part]) -> Balance:
     """What makes up the motor torque in all `parts` of recordings together."""
-    motions = []
-    for inputs, time, measured, seen in parts:
-        motion = _motion(model, inputs, time, measured)
-        motions.append(motion.kept(np.interp(motion.time, time, seen.astype(float)) > 0.99))
-    return _balanced(_Motion.of_all(motions), False)[0]
+    return _balanced(_Motion.of_all(_motions(model, parts)), False)[0]
+
+
+def left_unseen(model: Model, told: Sequence[Part], unseen: Sequence[Part]) -> tuple[float, float]:
+    """What is left of the motor torque [N.m, root mean square] on `unseen` samples, fitted to those that are `told`.
+
+    Without a torque over a turn, and with the orders that the latter tell; not a number where nothing is unseen.
+    """
+    seen, others = (_Motion.of_all(_motions(model, parts)) for parts in (told, unseen))
+    orders = _balanced(seen, False)[0].orders.tolist()
+
+    def left(columns: Sequence[int]) -> float:
+        fitted = _least_squares(_columns(seen, columns), seen.torque)
+        rest = others.torque - _columns(others, columns) @ fitted
+        return float(np.sqrt(np.mean(np.square(rest)))) if rest.size else math.nan
+
+    return left([]), left(orders)
 
 
 def finest(place: Signal) -> float:
@@ -188,16 +200,34 @@ def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Mo
     )
 
 
+def _motions(model: Model, parts: Sequence[Part]) -> list[_Motion]:
+    """The motion of each part where it is seen."""
+    motions = []
+    for inputs, time, measured, seen in parts:
+        motion = _motion(model, inputs, time, measured)
+        motions.append(motion.kept(np.interp(motion.time, time, seen.astype(float)) > 0.99))
+    return motions
+
+
+def _columns(motion: _Motion, orders: Sequence[int]) -> Signal:
+    """What may make up the torque, shape (samples, columns): friction, inertia, a weight, and some orders of a turn."""
+    columns = [np.ones(motion.time.size), np.sign(motion.velocity), motion.velocity, motion.acceleration]
+    if motion.weight:
+        # its own or its axis may be other than described: once in a turn
+        columns += [np.cos(motion.angle), np.sin(motion.angle)]
+    for order in orders:
+        columns += [np.cos(order * motion.angle), np.sin(order * motion.angle)]
+    return np.stack(columns, axis=1)
+
+
 def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tuple[Balance, Flags]:
     """Least squares, order by order: the one that stands out most, while chance would hardly raise any so far.
 
     Also which samples are `inside`, and not left out. Those are the given ones, or those that lie close enough.
     """
-    always = [np.ones(motion.time.size), np.sign(motion.velocity), motion.velocity, motion.acceleration]
-    if motion.weight:
-        # its own or its axis may be other than described: once in a turn
-        always += [np.cos(motion.angle), np.sin(motion.angle)]
-    known = np.stack([*always, *([-motion.rate] if lagged else [])], axis=1)
+    known = _columns(motion, ())
+    if lagged:
+        known = np.concatenate([known, -motion.rate[:, np.newaxis]], axis=1)
     first, highest = known.shape[1], min(int(TURN * finest(motion.angle)), MOST)
     turns = np.outer(motion.angle, np.arange(1, highest + NEIGHBOURS + 1))
     cosines, sines = np.cos(turns), np.sin(turns)

@@ -7,7 +7,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
-from pierburg_ros.estimation.torque_balance import TURN, Balance, Part, goes_round, over_a_turn
+from pierburg_ros.estimation.torque_balance import TURN, Balance, Part, goes_round, left_unseen, over_a_turn
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
@@ -17,10 +17,19 @@ LEAST = 0.01
 """Share of the strongest order from which another is told. Chosen: less is not seen beside it."""
 
 
-def has_overtones(data: Data, nominal: Model) -> bool:
-    """Whether more than one order of a torque over a turn is seen: more than one effect could be named for."""
-    found = repeated(data, nominal)
-    return found is not None and found.orders.size > 1
+def left_of_torque(told: Data, unseen: Data, nominal: Model) -> tuple[float, float] | None:
+    """What is left of the torque [N.m, root mean square] on the training samples of `unseen`, fitted to those `told`.
+
+    Without a torque over a turn, and with it. None where no overtones are told: then a search does as well.
+    """
+    found = repeated(told, nominal)
+    if found is None or found.orders.size < 2:
+        return None
+
+    def parts(data: Data) -> list[Part]:
+        return [_part(run) for run in data.runs if goes_round(nominal, run.measured, run.quantity)]
+
+    return left_unseen(nominal.with_residual(None), parts(told), parts(unseen))
 
 
 def with_lesser_orders(data: Data, nominal: Model) -> Model:

@@ -33,8 +33,9 @@ Folds = list[tuple[Data, Data]]
 class LeftOut:
     """What recordings left out of the fit say of an effect.
 
-    Their error [measured unit], the geometric mean of root mean squares, `without` it and `beside` those added before,
-    in how many of the `parts` it `helped`, and the names of the recordings in these.
+    Their error, the geometric mean of root mean squares, `without` it and `beside` those added before, in how many of
+    the `parts` it `helped`, and the names of the recordings in these. The error is in a `unit`: none is the measured
+    one.
     """
 
     without: float
@@ -42,6 +43,7 @@ class LeftOut:
     helped: int
     parts: int
     recordings: tuple[str, ...] = ()
+    unit: str = ""
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def remainder(
     weights: Mapping[str, Weight] = {}
     base: Fit | None = None
     deadline = deadline or Deadline()
-    around = supported_around(data, found.nominal, recalibrated)
+    around = supported_around(data, found.nominal)
     vouched = vouched_around(data, found.nominal) if around and data.several else None
     searched = data.several and vouched is None
     shared = shared_effects(found, progress, jobs, deadline.part(SHARED)) if searched else None
@@ -76,7 +76,7 @@ def remainder(
             fit, left_out = shared
             base = named = estimator.restated(fit)
             shape = fit_shape(data, [lambda _: named.model], pool, progress)
-        elif stood := _stood(found, pool, progress) if around is None else _undoubted(around, found):
+        elif stood := around or _stood(found, pool, progress):
             left_out, weights = {}, _by_effect(stood)
             if vouched is not None:
                 left_out, weights = dict.fromkeys(weights, vouched), {}
@@ -115,15 +115,11 @@ def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None
     nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
     added = found.beside or supported(data, nominal, pool, progress)
     beside = likelier(added, nearest, data, nominal, pool)
-    named = _undoubted(told_apart(beside.confirmed, data, nominal, pool, progress), found)
-    bare = named or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
-    both = with_play(bare, beside.reached.fit, data, nominal)
+    named = told_apart(beside.confirmed, data, nominal, pool, progress)
+    if _doubtful(named, found):
+        named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
+    both = with_play(named, beside.reached.fit, data, nominal)
     return both if both.weights else None
-
-
-def _undoubted(stood: Supported, found: Found) -> Supported | None:
-    """`stood`, unless there is doubt of it."""
-    return None if _doubtful(stood, found) else stood
 
 
 def _doubtful(stood: Supported, found: Found) -> bool:

@@ -59,7 +59,7 @@ def effect_explanation(
 def reason(support: Support, unit: str) -> str:
     """Why an effect is believed; `unit` is the measured one."""
     if support.left_out is not None:
-        return by_recordings_left_out(support.left_out, unit)
+        return by_recordings_left_out(support.left_out, support.left_out.unit or unit)
     if support.weight is not None:
         return by_weight(support.weight)
     if support.gain is None or support.without is None:
