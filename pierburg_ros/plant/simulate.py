@@ -101,14 +101,31 @@ def lasting_state(model: Model, inputs: Inputs, first: float, last: float, *star
     return blank
 
 
-def motor_torque(model: Model, inputs: Inputs, time: ArrayLike) -> Signal:
-    """Torque [N.m] at the shaft that the inputs of a current or torque drive make at each `time` [s]."""
+def motor_torque(model: Model, inputs: Inputs, time: ArrayLike, velocity: ArrayLike = 0.0) -> Signal:
+    """Torque [N.m] at the shaft that the inputs make at each `time` [s].
+
+    Under a voltage at a `velocity` [rad/s], by equations (1) and (2) of the paper: at the model's own resistance, cold
+    and without inductance or sag.
+    """
     value = {**NEUTRAL, **model.values}
-    drive = model.actuator.drive
-    per_input = value["torque_scale"] if drive == "torque" else value["gear_ratio"] * value["torque_constant"]
-    command = inputs.command if inputs.enabled is None else np.where(inputs.enabled, inputs.command, 0.0)
     place = np.searchsorted(inputs.time, np.asarray(time, dtype=float), side="right") - 1
-    return np.asarray(per_input * np.where(place < 0, 0.0, command[np.maximum(place, 0)]))
+
+    def held(values: Signal, before: float) -> Signal:
+        return np.where(place < 0, before, values[np.maximum(place, 0)])
+
+    enabled = np.ones(inputs.time.size) if inputs.enabled is None else inputs.enabled.astype(float)
+    command = held(inputs.command * enabled, 0.0)
+    drive = model.actuator.drive
+    if drive == "torque":
+        return np.asarray(value["torque_scale"] * command)
+    constant = value["gear_ratio"] * value["torque_constant"]
+    if drive == "current":
+        return np.asarray(constant * command)
+    supply = (
+        np.full(inputs.time.size, value["supply_voltage"]) if inputs.supply_voltage is None else inputs.supply_voltage
+    )
+    generated = constant * np.asarray(velocity, dtype=float) * held(enabled, enabled[0])
+    return np.asarray(constant / value["armature_resistance"] * (command * held(supply, supply[0]) - generated))
 
 
 def refuse_unsimulated(model: Model, simulated: Signal, times: Signal) -> None:

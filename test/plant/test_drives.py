@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from pierburg_ros.actuators import actuator_of, read_actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate
-from pierburg_ros.plant.simulate import simulate_stretches
+from pierburg_ros.plant.simulate import motor_torque, simulate_stretches
 
 ROTOR = Model.nominal(read_actuator("odrive"))
 PENDULUM = Model.nominal(read_actuator("ak80"))
@@ -165,3 +165,16 @@ def test_cogging_under_a_torque_counts_by_turns_of_the_output() -> None:
     expected = solve_ivp(slope, (0.0, TIME[-1]), [1.0, 0.0], t_eval=TIME, rtol=1e-10, atol=1e-12).y[0]
     # a step may be wrong by 1e-4 of its travel, and 20 rad are travelled
     assert np.abs(angle - expected).max() < 1e-4
+
+
+def test_the_torque_of_a_voltage_is_that_of_a_dc_motor() -> None:
+    """Stall torque k_g k_m V / R, none at the speed whose back-EMF is the voltage, none with an open bridge."""
+    model = Model.nominal(read_actuator("pierburg"))
+    constant, resistance = 37.3 * 0.022, 4.139
+    open_last = Inputs(np.arange(3.0), np.array([0.0, 0.5, 0.5]), np.full(3, 12.0), np.array([True, True, False]))
+    at = np.array([0.5, 1.5, 2.5])
+    stall = constant * 6.0 / resistance
+    assert motor_torque(model, open_last, at) == pytest.approx([0.0, stall, 0.0])
+    assert motor_torque(model, open_last, at, 6.0 / constant) == pytest.approx([-stall, 0.0, 0.0], abs=1e-12)
+    own = motor_torque(model, Inputs(np.zeros(1), np.ones(1)), np.zeros(1))
+    assert own == pytest.approx([constant * 13.5 / resistance])

@@ -66,18 +66,19 @@ class MissingTorque:
 
 def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
     """What the load torque of `model` lacks."""
-    return _of_motion(data, run, model) if run.shooting is not None else _of_error(data, run, model)
+    return _of_error(data, run, model) if data.actuator.load == "spring" else _of_motion(data, run, model)
 
 
 def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
-    """From the measured motion alone, inertia included, where a simulation does not keep to it."""
+    """From the measured motion alone, inertia included, where no spring makes an error fade as it came."""
     own = data.scales
     instant = INSTANT * own.time
     grid = np.arange(run.time[0], run.time[-1], instant)
     shown = _averaged(run.time, turned(model, run.time, run.measured, run.quantity), grid)
     velocity = np.gradient(shown, instant)
     acceleration = np.gradient(velocity, instant)
-    motor = _averaged(run.time, motor_torque(model, run.inputs, run.time), grid)
+    speed = np.interp(run.time, grid, velocity)
+    motor = _averaged(run.time, motor_torque(model, run.inputs, run.time, speed), grid)
     torque = missing(model.record()[0], motor, grid, shown, velocity, acceleration)
     moving = np.abs(velocity) > _slowest(data, run, instant)
     return MissingTorque(

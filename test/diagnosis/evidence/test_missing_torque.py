@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.evidence.missing_torque import MissingTorque, missing_torque, rhythms, spans
+from pierburg_ros.estimation.data import data_of, in_parts
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
 
 RANDOM = np.random.default_rng(3)
 OWN = NOMINAL.scales
@@ -48,6 +52,19 @@ def test_a_load_for_a_while_is_found_in_its_time() -> None:
     assert (OWN.time * start, OWN.time * end) == (pytest.approx(9.0, abs=0.6), pytest.approx(14.0, abs=0.6))
     # Torques far from the median are clipped, so that a slip does not pass for a load: its sign is what remains.
     assert torque > 0.0
+
+
+def test_a_load_on_a_pendulum_under_a_voltage_is_found_in_its_time() -> None:
+    """No spring takes an error back there: inertia, gravity and back-EMF are read from the motion."""
+    servo = Model.nominal(read_actuator("xl330"))
+    time = np.arange(0.0, 24.0, 0.004)
+    duty = np.random.default_rng(6).uniform(-0.6, 0.6, 35)[(time / 0.7).astype(int)]
+    load = {"external_load.torque": 0.02, "external_load.start": 9.0, "external_load.end": 16.0}
+    angle = simulate(servo.with_values(load), Inputs(time, duty), time) + 0.0015 * RANDOM.standard_normal(time.size)
+    data = in_parts(data_of([Recording("servo", "position", time, angle, Channel(time, duty))], servo))
+    (start, end, torque), own = missing_torque(data, data.runs[0], servo).spans(1)[0], servo.scales
+    assert (own.time * start, own.time * end) == (pytest.approx(9.0, abs=0.6), pytest.approx(16.0, abs=0.6))
+    assert own.torque * torque == pytest.approx(0.02, rel=0.2)
 
 
 def test_a_load_that_goes_on_has_no_end() -> None:
