@@ -326,6 +326,7 @@ class Diagnosis(Part):
     """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
     effects: list[Effect] = []
     parameters: dict[str, BaseParameter] = {}
+    """Those of the actuator, and of effects that it always has as `effect.parameter`."""
     changes: list[Change] = []
     locations: list[Location] = Field([], max_length=20)
     """Of the first recording, ranked."""
