@@ -71,8 +71,9 @@ def by_evidence(gain: float, without: str) -> str:
     """Why an effect is named that the best explanation needs; `without`: the name of the best one that lacks it."""
     rival = "the model as described" if without == NOMINAL else numbers.words(without)
     return (
-        f"The best explanation without it that changes no more quantities is {rival}: it fits worse by "
-        f"{float(f'{gain:.3g}'):,.0f} in chi-squared; up to {TIED:g} would be a tie."
+        f"The best explanation without it that changes no more quantities is {rival}: it fits "
+        f"{'worse' if gain >= 0.0 else 'better'} by {float(f'{abs(gain):.3g}'):,.0f} in chi-squared; "
+        f"up to {TIED:g} is a tie."
     )
 
 

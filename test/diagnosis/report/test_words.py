@@ -29,13 +29,17 @@ TIED = Effect(
             Support(0.99, gain=812.34, without=RIVAL),
             "quantities is coulomb friction + backlash: it fits worse by 812 in",
         ),
+        (
+            Support(0.5, gain=-6.9, without=RIVAL),
+            "quantities is coulomb friction + backlash: it fits better by 7 in",
+        ),
         (Support(1.0), "All samples lie on this grid"),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
         (Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)), "gain 90. 65 % of the mean squared error goes"),
     ],
-    ids=["evidence", "grid", "some recordings", "all recordings", "beside what remains", "of the error"],
+    ids=["evidence", "a better fit with more numbers", "grid", "some recordings", "all recordings", "beside what remains", "of the error"],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
