@@ -39,7 +39,15 @@ TIED = Effect(
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
         (Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)), "gain 90. 65 % of the mean squared error goes"),
     ],
-    ids=["evidence", "a better fit with more numbers", "grid", "some recordings", "all recordings", "beside what remains", "of the error"],
+    ids=[
+        "evidence",
+        "a better fit with more numbers",
+        "grid",
+        "some recordings",
+        "all recordings",
+        "beside what remains",
+        "of the error",
+    ],
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
