@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Literal
 
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
@@ -17,6 +18,7 @@ from pierburg_ros.diagnosis.limits.limits import limits
 from pierburg_ros.diagnosis.remainder.around import goes_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined, unnamed
+from pierburg_ros.diagnosis.remainder.standing import Standing, standing
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
@@ -35,8 +37,8 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
 APART = 0.5
-"""Share of the time left after a search in which disturbances are looked for. Work: the rest is for what remains, which
-names effects that stand beside it; not varied."""
+"""Share of the time left after effects have been named in which disturbances are looked for. Work: the rest is for the
+shape of what remains, and for limits; not varied."""
 
 
 def diagnose(
@@ -108,27 +110,33 @@ def examined(
             return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
         told = deadline.attempt(partial(unnamed, coarse, jobs, deadline), unexamined(coarse))
         return replace(coarse, data=doubt.said(coarse.data, unsettled=True)), told
-    if single and not turning:
-        tell, time = staged(progress, "disturbances"), deadline.part(APART)
-        found = time.attempt(partial(apart, found, recordings[0], tell, jobs, time), found)
-        if verdict_on(found.chosen) != "unexplained":
-            return found, None if unseen_confirm(found) else unexamined(found)
+    # names first, for they matter most where time runs short
     tell = staged(progress, "what remains")
-    return found, deadline.attempt(partial(remainder, found, tell, jobs, deadline), unexamined(found))
+    named = deadline.attempt(partial(standing, found, tell, jobs, deadline), Standing(found.estimator))
+    if single and not turning:
+        aside, time = staged(progress, "disturbances"), deadline.part(APART)
+        beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
+        if verdict_on(beside.chosen) != "unexplained" and (confirmed := unseen_confirm(beside)) != "nothing":
+            return beside, None if confirmed == "all" else unexamined(beside)
+    return found, deadline.attempt(partial(remainder, found, named, tell, jobs, deadline), unexamined(found, named))
 
 
-def unseen_confirm(found: Found) -> bool:
-    """Whether what is found beside a disturbance accounts for samples that test, and lowers the error there by a tenth.
+def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]:
+    """What samples that test confirm of a disturbance and of what is found beside it.
 
-    What an unlogged quantity has done is estimated where the samples train, so that there little is left to miss: a
-    wrong effect fits there as well, and so does a parameter that is off by next to nothing.
+    With both they have to be accounted for, or the disturbance stands for something else, and all is looked at again
+    without it. What is found has to lower the error there by a tenth: what an unlogged quantity has done is estimated
+    where the samples train, so that there little is left to miss. A wrong effect fits there as well, and so does a
+    parameter that is off by next to nothing.
     """
     explanation = found.chosen.explanation
     if not (found.data.disturbed and explanation.size):
-        return True
+        return "all"
     known = found.recalibrated if explanation.variants else found.fits[Explanation()]
     before, after = (rms(found.data.residual(fit.model, fit.switch)[found.data.test]) for fit in (known, found.final))
-    return after < min(BETTER * before, EXPLAINED)
+    if after >= EXPLAINED:
+        return "nothing"
+    return "all" if after < BETTER * before else "the disturbance"
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

@@ -24,7 +24,8 @@ def improbability(coordinates: Coordinates, point: Signal) -> Signal:
     `KNOWN` around its nominal value; one that is nominally 0 to its own scale. Of an effect that the actuator always
     has, it spreads around the nominal value as far as what is plausible goes. Of any other effect, a number that may
     be 0 spreads as far as its largest plausible value. One that may not, a time or a number of teeth, lies within its
-    plausible range in 95 of 100 actuators, by its logarithm. Moments are as likely one as another.
+    plausible range in 95 of 100 actuators, by its logarithm; a damping or a velocity that is searched so, and may be 0
+    all the same, is never too small. Moments are as likely one as another.
     """
     rows = [_row(coordinates, place, float(x)) for place, x in enumerate(point)]
     return np.array(rows, dtype=np.float64)
@@ -51,5 +52,6 @@ def _row(coordinates: Coordinates, place: int, x: float) -> float:
         return 0.0
     if declared.rhythm or declared.logarithmic:
         value = max(abs(axis.value(x)) / declared.scale(coordinates.nominal.scales), 1e-300)
-        return SURE * (math.log(value) - 0.5 * math.log(low * high)) / (0.5 * math.log(high / low))
+        far = SURE * (math.log(value) - 0.5 * math.log(low * high)) / (0.5 * math.log(high / low))
+        return max(far, 0.0) if declared.default == 0.0 else far
     return x

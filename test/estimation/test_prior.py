@@ -69,3 +69,9 @@ def test_what_no_actuator_has_is_told_by_name():
     for periods, told in ((6.0, set()), (200.0, {names[1]})):
         point = coordinates.point({**NOMINAL.values, names[0]: 0.01, names[1]: periods})
         assert implausible(coordinates, point) == told
+
+
+def test_what_may_be_0_is_too_large_but_never_too_small():
+    low, high = DECLARED["gear_compliance.damping"].expected(NOMINAL.scales)
+    assert improbable("gear_compliance.damping", low / 10.0) == 0.0
+    assert improbable("gear_compliance.damping", high) == pytest.approx(1.96)

@@ -18,8 +18,9 @@ from pierburg_ros.plant import Model
 class Scored:
     """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two.
 
-    `unseen` is the same of the samples that validate, when those that train are known. `errors` are the mean squares
-    [noise^2] of the residual on those that train and on those that validate.
+    `unseen` is the same of the samples that validate, when those that train are known, with the discrepancy that is
+    most likely on both: what remains there may be larger. `errors` are the mean squares [noise^2] of the residual on
+    those that train and on those that validate.
     """
 
     fit: Fit
@@ -48,9 +49,11 @@ def scored(data: Data, fit: Fit) -> Scored:
     residual = data.residual(fit.model, fit.switch)
     discrepancy = kalman.most_likely(residual)
     cost = evidence(kalman.filtered(discrepancy), residual)
-    both = evidence(Kalman(data, data.train | data.validation).filtered(discrepancy), residual)
+    both = Kalman(data, data.train | data.validation)
+    larger = both.most_likely(residual)
+    unseen = evidence(both.filtered(larger), residual) - evidence(kalman.filtered(larger), residual)
     errors = _mean_square(residual[data.train]), _mean_square(residual[data.validation])
-    return Scored(fit, discrepancy, cost, both - cost, errors)
+    return Scored(fit, discrepancy, cost, unseen, errors)
 
 
 def _mean_square(residual: Signal) -> float:

@@ -223,7 +223,7 @@ class Search:
         """
         if self.beside is not None:
             return False
-        self.beside = supported(self.data, self.nominal, self.pool, self.progress)
+        self.beside = supported(self.data, self.nominal, list(self.fits.values()), self.pool, self.progress)
         reached = self.beside.reached.fit
         if reached.explanation.size <= self.beam.depth:
             fit = self.add(reached.explanation, reached.values)

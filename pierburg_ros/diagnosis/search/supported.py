@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
@@ -119,23 +119,43 @@ class Beside:
         return self.begun > 0.0 and self.reached.left < OPEN * self.begun
 
 
-def supported(data: Data, nominal: Model, pool: Executor, progress: Progress) -> Beside:
-    """The likeliest explanation, and what of it unseen samples confirm.
+def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, progress: Progress) -> Beside:
+    """The likeliest explanation, and what of it unseen samples confirm; `known` are fits that a search has made.
 
     Quantities are added to the nominal model one by one, each the one that makes the recordings likeliest with its own
     most likely discrepancy: an effect that bends to a part of what remains gains no more than that part. It ends where
-    one more helps no further. What bends to a remainder gains where it was fitted, and not on samples that validate:
-    of the named, those without whose gain there are taken away again, the weakest first.
+    one more helps no further. Beside a discrepancy as large as all that is missing, a descent sees little of an effect:
+    what is known to come nearest without one is taken where it is likelier. What bends to a remainder gains where it
+    was fitted, and not on samples that validate: of the named, those without whose gain there are taken away again, the
+    weakest first.
     """
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     begun, weighed = reached.left, Supported(nominal, reached, {})
+    near = list(pool.map(lambda fit: settled(data, nominal, fit), _nearest(known)))
     for _ in range(MOST):
-        following = next(iter(_grown(data, nominal, reached, pool, progress)), None)
-        if following is None or reached.cost - following.cost < SIGNIFICANT:
+        grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
+        following = min((each for each in grown if _likelier(each, reached)), key=lambda each: each.cost, default=None)
+        if following is None:
             break
         weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
         reached = weighed.scored
     return Beside(reached, begun, _without(weighed, _unconfirmed, data, nominal, pool))
+
+
+def _nearest(known: Iterable[Fit]) -> list[Fit]:
+    """Of each size the fit that leaves least, without a change in the middle."""
+    best: dict[int, Fit] = {}
+    for fit in known:
+        size = fit.explanation.size
+        if fit.explanation.changed is None and 0 < size <= MOST and (size not in best or fit.chi2 < best[size].chi2):
+            best[size] = fit
+    return list(best.values())
+
+
+def _likelier(larger: Scored, smaller: Scored) -> bool:
+    """Whether each quantity that one has more than the other makes the recordings likelier by what names one."""
+    more = larger.fit.explanation.size - smaller.fit.explanation.size
+    return more > 0 and smaller.cost - larger.cost >= SIGNIFICANT * more
 
 
 def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executor) -> Beside:

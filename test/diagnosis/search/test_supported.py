@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
+from pierburg_ros.diagnosis.search import supported as module
 from pierburg_ros.diagnosis.search.scored import scored, settled
 from pierburg_ros.diagnosis.search.supported import (
     CONFIRMED,
@@ -38,7 +39,7 @@ def disturbed(changes: dict[str, float], seed: int) -> Recording:
 def found_in(changes: dict[str, float], seed: int = 0) -> Supported | None:
     data = data_on(disturbed(changes, seed))
     with workers(1) as pool:
-        return named_in(supported(data, NOMINAL, pool, lambda _: None), data)
+        return named_in(supported(data, NOMINAL, (), pool, lambda _: None), data)
 
 
 def named_in(beside: Beside, data: Data) -> Supported | None:
@@ -70,6 +71,33 @@ def test_what_a_search_has_found_is_heard_where_it_is_likelier():
         heard = likelier(nothing, late, data, NOMINAL, pool)
         assert likelier(nothing, other, data, NOMINAL, pool) is nothing
     assert set(heard.confirmed.weights) == {DELAY} and heard.begun == nothing.begun
+
+
+def test_what_a_search_knows_is_taken_where_no_quantity_leads_to_it(monkeypatch: pytest.MonkeyPatch):
+    """Of each size what leaves least; a change in the middle is none of it."""
+    data = data_on(disturbed({"input_delay.delay": 0.02}, 0))
+    estimator = Estimator(data, NOMINAL)
+    late = estimator.fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
+    other = estimator.fit(Explanation(("supply_voltage",)))
+    changed = replace(late, explanation=Explanation(changed="supply_voltage"), values=other.values)
+    monkeypatch.setattr(module, "_grown", lambda *_: [])
+    with workers(1) as pool:
+        beside = supported(data, NOMINAL, [other, late, changed], pool, lambda _: None)
+    assert beside.reached.fit.explanation == late.explanation
+    assert set(beside.confirmed.weights) == {DELAY}
+
+
+def test_more_may_remain_on_unseen_samples_than_where_it_was_fitted():
+    """Sixty times the noise there, next to nothing where the fit was made: a delay is as likely as before."""
+    clean = recording({"input_delay.delay": 0.005}, duration=16.0)
+    ends = np.flatnonzero(np.diff(data_on(clean).validation.astype(int)))
+    swell = np.zeros(clean.time.size)
+    for start, end in zip(ends[::2], ends[1::2], strict=False):
+        swell[start:end] = np.sin(np.linspace(0.0, np.pi, end - start)) ** 2
+    data = data_on(replace(clean, measured=clean.measured + 60.0 * NOISE * swell))
+    estimator = Estimator(data, NOMINAL)
+    late = scored(data, estimator.at(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.005}))
+    assert late.unseen < scored(data, estimator.at(Explanation())).unseen
 
 
 def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():

@@ -1,0 +1,103 @@
+"""What can be named although something remains: by what recordings left out, or unseen samples of a single one, say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+
+from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
+from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
+from pierburg_ros.diagnosis.remainder.shared import shared_effects
+from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.diagnosis.search.supported import Supported, Weight, likelier, supported, told_apart, with_play
+from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.workers import workers
+
+SHARED = 0.6
+"""Share of the time that is left in which effects are added that several recordings share. Work: the rest is for
+intervals and for the shape of what remains; not varied."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The model `base` that stands although something remains, None where no quantity does; `estimator` has fitted it.
+
+    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
+    remains.
+    """
+
+    estimator: Estimator
+    base: Fit | None = None
+    left_out: Mapping[str, LeftOut] = field(default_factory=dict)
+    weights: Mapping[str, Weight] = field(default_factory=dict)
+
+
+def standing(
+    found: Found, progress: Progress = lambda _: None, jobs: int | None = None, deadline: Deadline | None = None
+) -> Standing:
+    """What stands beyond one explanation of all.
+
+    What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
+    on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
+    what remains.
+    """
+    data, estimator = found.data, found.estimator
+    deadline = deadline or Deadline()
+    around = supported_around(data, found.nominal)
+    vouched = vouched_around(data, found.nominal) if around and data.several else None
+    if data.several and vouched is None:
+        fit, left_out = shared_effects(found, progress, jobs, deadline.part(SHARED))
+        return Standing(estimator, estimator.restated(fit), left_out)
+    with workers(jobs, deadline) as pool:
+        stood = around or _stood(found, pool, progress)
+    if stood is None:
+        return Standing(estimator)
+    fitted = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
+    base, weights = fitted.restated(stood.scored.fit), _by_effect(stood)
+    if vouched is not None:
+        return Standing(fitted, base, dict.fromkeys(weights, vouched))
+    return Standing(fitted, base, {}, weights)
+
+
+def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+    """What unseen samples of a single recording confirm and nothing simpler stands for, and the play of its sensor.
+
+    A play is read from the samples themselves: it needs none of the others.
+    """
+    data, nominal = found.data, found.nominal
+    nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
+    added = found.beside or supported(data, nominal, found.fits.values(), pool, progress)
+    beside = likelier(added, nearest, data, nominal, pool)
+    named = told_apart(beside.confirmed, data, nominal, pool, progress)
+    if _doubtful(named, found):
+        named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
+    both = with_play(named, beside.reached.fit, data, nominal)
+    return both if both.weights else None
+
+
+def _doubtful(stood: Supported, found: Found) -> bool:
+    """Whether the recalibrated model hardly gains by the effects where a simulation begins again and again.
+
+    An error there is no bad luck, and has to fall by a tenth on samples that validate: with the effects alone, or with
+    them beside all that was recalibrated. What was read from the samples themselves, without a free number, stands on
+    no simulation.
+    """
+    if not (stood.scored.fit.explanation.names and found.data.in_stretches):
+        return False
+    estimator, named, known = Estimator(found.data, stood.nominal), stood.scored.fit, found.recalibrated
+    most = BETTER**2 * found.estimator.validation_misfit(known)
+    if estimator.validation_misfit(named) <= most:
+        return False
+    both = Explanation(known.explanation.drifted, named.explanation.variants)
+    beside = estimator.fit(both, {**named.values, **{name: known.values[name] for name in both.drifted}})
+    return estimator.validation_misfit(beside) > most
+
+
+def _by_effect(stood: Supported) -> dict[str, Weight]:
+    """The weight of each effect, by id."""
+    return {key.effect: weight for key, weight in stood.weights.items() if isinstance(key, Variant)}
