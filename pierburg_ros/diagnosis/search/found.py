@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.linalg import qr
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
-from pierburg_ros.diagnosis.search.search import Beam, Search
+from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
 from pierburg_ros.diagnosis.search.selection import adequate, overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
@@ -107,16 +108,15 @@ def _grown(
     begun: list[Search],
 ) -> Search:
     """The search with its rivals fitted; each search is added to those `begun` at once, for who cannot wait."""
-    with workers(jobs, deadline) as pool:
-        found = Search(data, nominal, pool, progress, beam)
-        begun.append(found)
-        if overlooks(found.run(), found.whole):
-            found = Search(with_validation(data), nominal, pool, progress, beam)
-            found.run()
-        if not found.resigned:
-            fit_rivals(found, found.preferred())
-            found.pruned()
-    return found
+    with suppress(Resigned), workers(jobs, deadline) as pool:
+        begun.append(Search(data, nominal, pool, progress, beam))
+        if overlooks(begun[-1].run(), begun[-1].whole):
+            begun.append(Search(with_validation(data), nominal, pool, progress, beam))
+            begun[-1].run()
+        if not begun[-1].resigned:
+            fit_rivals(begun[-1], begun[-1].preferred())
+            begun[-1].pruned()
+    return begun[-1]
 
 
 def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) -> Progress:
@@ -128,6 +128,7 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
         deadline.check()
         done += 1
         searching = begun[-1]
+        searching.check()
         searching.waiting = max(searching.waiting - 1, 0)
         ratios = [fit.ratio for fit in list(searching.fits.values())]
         best = f"error {min(ratios):.3g} times the noise" if ratios else ""

@@ -6,10 +6,12 @@ import numpy as np
 from support.fits import found_among, made_up
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.remainder import _below
+from pierburg_ros.diagnosis.remainder.remainder import _below, unexamined
 from pierburg_ros.diagnosis.remainder.shape import Shape
+from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.diagnosis.search.supported import Weight
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 
 STIFFER = {"spring_stiffness": 0.17}
@@ -33,6 +35,14 @@ def test_without_a_confirmed_shape_the_recalibrated_model_is_given_and_not_one_t
 def test_numbers_that_unseen_samples_do_not_confirm_have_not_drifted():
     below = _below(recalibrated_on({}), None)
     assert below.explanation == Explanation() and below.values["spring_stiffness"] == 0.1419
+
+
+def test_what_has_been_named_stands_where_no_time_is_left_for_the_rest():
+    found, weight = recalibrated_on(STIFFER), Weight(300.0, 100.0)
+    base = made_up(Explanation(variants=(Variant("sensor_lag", ("time_constant",)),)), 2.0, NOMINAL)
+    told = unexamined(found, Standing(found.estimator, base, weights={"sensor_lag": weight}))
+    assert told.base.explanation == base.explanation and told.weights == {"sensor_lag": weight}
+    assert unexamined(found).base.explanation == Explanation(("spring_stiffness",))
 
 
 def recalibrated_on(changes: dict[str, float]) -> Found:

@@ -1,7 +1,9 @@
 """How a search grows explanations: it finds pairs, keeps to its beam, and ends when its budget is spent."""
 
+import math
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +15,7 @@ from pierburg_ros.diagnosis.search import search as module
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.search import Beam, Search
+from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
 from pierburg_ros.diagnosis.search.selection import TIED
 from pierburg_ros.diagnosis.search.supported import Beside, Supported
 from pierburg_ros.estimation.data import Data
@@ -216,6 +218,18 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     assert empty._likeliest_accounts_for_all() == (beside == 1.0)
     assert empty.resigned == resigned
     assert not empty._likeliest_accounts_for_all(), "asked once"
+
+
+@pytest.mark.parametrize(("asked", "resigned"), [(1.0, True), (2.0, False), (math.inf, False)])
+def test_it_resigns_half_as_long_again_after_it_was_asked_what_is_likeliest(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, asked: float, resigned: bool
+) -> None:
+    """Two seconds of work after its beginning, having been asked so long after that, or never."""
+    empty._begun, empty._asked = 10.0, 10.0 + asked
+    monkeypatch.setattr(module.time, "process_time", lambda: 12.0)
+    with pytest.raises(Resigned) if resigned else nullcontext():
+        empty.check()
+    assert empty.resigned == resigned
 
 
 @pytest.mark.parametrize(
