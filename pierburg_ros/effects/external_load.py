@@ -32,7 +32,7 @@ def _for_a_while(missing: Missing) -> Sequence[Start]:
 EFFECT = Effect(
     id="external_load",
     stage="load",
-    sentence="Something pushes on the valve from outside, steadily or in pulses.",
+    sentence="Something pushes on the shaft from outside, steadily or in pulses.",
     equation="load torque torque + amplitude sin(2 pi frequency t + phase) for start <= t < end",
     source="Wittenburg, Dynamics of Multibody Systems, 2nd ed. (2008)",
     elsewhere=Elsewhere(
