@@ -25,6 +25,7 @@ from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.search import Beam
+from pierburg_ros.diagnosis.search.supported import confirmed_beside
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
@@ -32,9 +33,11 @@ from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
 from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.workers import workers
 
 APART = 0.5
 """Share of the time left after effects have been named in which disturbances are looked for. Work: the rest is for the
@@ -117,7 +120,10 @@ def examined(
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
         if verdict_on(beside.chosen) != "unexplained" and (confirmed := unseen_confirm(beside)) != "nothing":
-            return beside, None if confirmed == "all" else unexamined(beside)
+            stands = confirmed == "all" and deadline.attempt(
+                partial(effects_stand, beside, found, jobs, deadline), False
+            )
+            return beside, None if stands else unexamined(beside)
     return found, deadline.attempt(partial(remainder, found, named, tell, jobs, deadline), unexamined(found, named))
 
 
@@ -137,6 +143,19 @@ def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]
     if after >= EXPLAINED:
         return "nothing"
     return "all" if after < BETTER * before else "the disturbance"
+
+
+def effects_stand(beside: Found, found: Found, jobs: int | None, deadline: Deadline) -> bool:
+    """Whether effects that are found `beside` a wander are confirmed beside a remainder of any shape as well.
+
+    A wander takes what is slow, of whatever origin, and leaves the rest of it to effects that are not there.
+    """
+    fit = beside.chosen
+    if not (beside.data.disturbed and fit.explanation.variants):
+        return True
+    begun = found.estimator.fit(fit.explanation, fit.values, BRIEF)
+    with workers(jobs, deadline) as pool:
+        return confirmed_beside(begun, found.data, found.nominal, pool)
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

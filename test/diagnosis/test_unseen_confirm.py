@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pytest
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.diagnose import unseen_confirm
+from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.diagnose import effects_stand, unseen_confirm
 from pierburg_ros.estimation.data import in_parts
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -45,3 +46,10 @@ def test_a_parameter_beside_a_disturbance_that_is_off_by_next_to_nothing_has_not
 
 def test_without_a_disturbance_the_search_has_decided():
     assert unseen_confirm(found({}, disturbed=False)) == "all"
+
+
+@pytest.mark.parametrize(("really", "stands"), [(STICKY, True), ({}, False)])
+def test_an_effect_beside_a_disturbance_has_to_stand_beside_a_remainder_of_any_shape(really, stands):
+    beside = found(really, disturbed=True)
+    elsewhere = SimpleNamespace(data=beside.data, nominal=NOMINAL, estimator=Estimator(beside.data, NOMINAL))
+    assert effects_stand(beside, elsewhere, 1, Deadline()) == stands

@@ -170,6 +170,13 @@ def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executo
     return Beside(reached, beside.begun, _without(weighed, _unconfirmed, data, nominal, pool))
 
 
+def confirmed_beside(fit: Fit, data: Data, nominal: Model, pool: Executor) -> bool:
+    """Whether unseen samples confirm all effects of a `fit` beside what remains, however little of it they explain."""
+    weights = _weighed(data, nominal, settled(data, nominal, fit), pool).weights
+    effects = {quantity: weight for quantity, weight in weights.items() if isinstance(quantity, Variant)}
+    return all(weight.confirmed and not _idle(quantity, weight) for quantity, weight in effects.items())
+
+
 def told_apart(named: Supported, data: Data, nominal: Model, pool: Executor, progress: Progress) -> Supported:
     """What of `named` may be named, each effect with what could stand in its place.
 

@@ -13,6 +13,7 @@ from pierburg_ros.diagnosis.search.supported import (
     Beside,
     Supported,
     Weight,
+    confirmed_beside,
     likelier,
     supported,
     told_apart,
@@ -98,6 +99,14 @@ def test_more_may_remain_on_unseen_samples_than_where_it_was_fitted():
     estimator = Estimator(data, NOMINAL)
     late = scored(data, estimator.at(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.005}))
     assert late.unseen < scored(data, estimator.at(Explanation())).unseen
+
+
+@pytest.mark.parametrize(("really", "confirmed"), [({"input_delay.delay": 0.02}, True), ({}, False)])
+def test_an_effect_found_elsewhere_is_confirmed_beside_what_remains(really: dict[str, float], confirmed: bool):
+    data = data_on(disturbed(really, 0))
+    late = Estimator(data, NOMINAL).fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
+    with workers(1) as pool:
+        assert confirmed_beside(late, data, NOMINAL, pool) == confirmed
 
 
 def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
