@@ -120,10 +120,11 @@ def examined(
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
         if verdict_on(beside.chosen) != "unexplained" and (confirmed := unseen_confirm(beside)) != "nothing":
-            stands = confirmed == "all" and deadline.attempt(
-                partial(effects_stand, beside, found, jobs, deadline), False
-            )
-            return beside, None if stands else unexamined(beside)
+            if confirmed == "all" and deadline.attempt(partial(effects_stand, beside, found, jobs, deadline), False):
+                return beside, None
+            if named.base is None:
+                return beside, unexamined(beside)
+            found = replace(found, data=replace(found.data, remarks=beside.data.remarks))
     return found, deadline.attempt(partial(remainder, found, named, tell, jobs, deadline), unexamined(found, named))
 
 
