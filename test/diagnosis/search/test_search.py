@@ -220,12 +220,16 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
     assert not empty._likeliest_accounts_for_all(), "asked once"
 
 
-@pytest.mark.parametrize(("asked", "resigned"), [(1.0, True), (2.0, False), (math.inf, False)])
+@pytest.mark.parametrize(
+    ("asked", "left", "resigned"),
+    [(1.0, 3.0, True), (1.0, 1.0, False), (2.0, 3.0, False), (math.inf, 3.0, False)],
+)
 def test_it_resigns_half_as_long_again_after_it_was_asked_what_is_likeliest(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, asked: float, resigned: bool
+    empty: Search, monkeypatch: pytest.MonkeyPatch, asked: float, left: float, resigned: bool
 ) -> None:
-    """Two seconds of work after its beginning, having been asked so long after that, or never."""
+    """After two seconds of work, having been asked so long after its beginning, or never; the best leaves so much."""
     empty._begun, empty._asked = 10.0, 10.0 + asked
+    empty.keep(made_up(ONES[0], left, NOMINAL))
     monkeypatch.setattr(module.time, "process_time", lambda: 12.0)
     with pytest.raises(Resigned) if resigned else nullcontext():
         empty.check()
