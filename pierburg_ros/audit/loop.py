@@ -95,7 +95,7 @@ def rule(signals: Signals, nominal: Model) -> Rule | None:
 def _at(signals: Signals, nominal: Model, late: int) -> Rule:
     """The rule from what was `late` samples before, by least squares."""
     past = signals.time - late * signals.interval
-    kept = _free(signals) & (past >= signals.time[0]) & (past <= signals.time[-1])
+    kept = free_of_limits(signals) & (past >= signals.time[0]) & (past <= signals.time[-1])
     angle = np.interp(past[kept], signals.time, decoded(nominal, signals.measured, signals.quantity))
     assert signals.setpoints is not None  # checked before
     setpoint, wanted = signals.setpoints.at(past[kept]), signals.command[kept]
@@ -107,7 +107,7 @@ def _at(signals: Signals, nominal: Model, late: int) -> Rule:
     return Rule(late, left, float(weights[0]), float(weights[1]))
 
 
-def _free(signals: Signals) -> Flags:
+def free_of_limits(signals: Signals) -> Flags:
     """Samples at which the input is not limited, and acts."""
     command = signals.command
     low, high = float(np.min(command)), float(np.max(command))

@@ -115,7 +115,8 @@ def examined(
         return replace(coarse, data=doubt.said(coarse.data, unsettled=True)), told
     # names first, for they matter most where time runs short
     tell = staged(progress, "what remains")
-    named = deadline.attempt(partial(standing, found, tell, jobs, deadline), Standing(found.estimator))
+    witness = recordings[0] if single else None
+    named = deadline.attempt(partial(standing, found, tell, jobs, deadline, witness), Standing(found.estimator))
     if single and not turning:
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)

@@ -239,6 +239,8 @@ class Effect:
     """The parameter that is the width of a free play [rad]: the driven side follows when that is used up."""
     dead_time: str | None = None
     """The parameter that is a time [s] for which a command has no effect."""
+    dead_band: str | None = None
+    """The parameter by which a command has to differ from 0 to have an effect."""
     lag: str | None = None
     """The parameter that is the time constant [s] of a first-order lag of the measurement."""
     rounds: str | None = None

@@ -4,35 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.servo import GAIN, SERVO, TIME, in_loop
 
-from pierburg_ros.actuators import read_actuator
 from pierburg_ros.audit import audit
 from pierburg_ros.audit.loop import rule
 from pierburg_ros.audit.signals import Signals
-from pierburg_ros.plant import Model
-from pierburg_ros.plant.plant import Plant
 from pierburg_ros.recording import Channel, Recording
-
-SERVO = Model.nominal(read_actuator("xl330"))
-LACKING = SERVO.with_values({"load_dependent_friction.coefficient": 0.2, "supply_sag.source_resistance": 1.0})
-"""What a servo has and its description lacks, so that the motion alone does not tell when its duty acted."""
-TIME = np.arange(0.0, 10.0, 0.005)
-GAIN = 1.1
-
-
-def in_loop(slow: int = 0, seed: int = 0, gain: float = GAIN, weight: float = 1.0, size: float = 0.5) -> Recording:
-    """A servo that follows smooth setpoints by a duty that is computed from what was `slow` samples before."""
-    phases = np.random.default_rng(seed).uniform(0.0, 6.0, 3)
-    wanted = sum(size * np.sin(rate * TIME + phase) for rate, phase in zip((1.1, 2.7, 4.9), phases, strict=True))
-    plant = Plant(LACKING, noise=0.0007, seed=seed)
-    measured, duty = np.empty(TIME.size), np.zeros(TIME.size)
-    for sample in range(TIME.size):
-        measured[sample] = plant.measure()
-        past = sample - slow
-        if past >= 0:
-            duty[sample] = np.clip(gain * (weight * wanted[past] - measured[past]), -1.0, 1.0)
-        plant.advance(duty[sample], 0.005)
-    return Recording("loop", "position", TIME, measured, Channel(TIME, duty), setpoints=Channel(TIME, wanted))
 
 
 def late(recording: Recording, by: float) -> Recording:

@@ -39,7 +39,7 @@ def unexamined(found: Found, named: Standing | None = None) -> Remainder:
     """Where there is no time to look at what remains: the model that stands, else that below it, without intervals."""
     named = named or Standing(found.estimator)
     base = named.base or _below(found, None)
-    return Remainder(found.estimator.restated(base), {}, named.left_out, named.weights, None)
+    return Remainder(found.estimator.restated(base), dict(named.told), named.left_out, named.weights, None)
 
 
 def unnamed(found: Found, jobs: int | None, deadline: Deadline) -> Remainder:
@@ -66,7 +66,7 @@ def remainder(
         shape = fit_shape(data, ways, pool, progress)
         stands = confirmed(shape, data, pool)
         base = named.base or _below(found, shape if stands else None)
-        known = estimates(named.estimator, base, pool.map)
+        known = {**estimates(named.estimator, base, pool.map), **named.told}
     base = found.estimator.restated(base)
     return Remainder(base, known, named.left_out, named.weights, shape if stands else None)
 

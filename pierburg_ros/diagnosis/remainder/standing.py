@@ -6,16 +6,22 @@ from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
+from pierburg_ros.audit.signals import Signals
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.supported import Supported, Weight, likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.diagnosis.search.witness import Witness, witnessed
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.intervals import Estimate
+from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
 SHARED = 0.6
@@ -28,23 +34,28 @@ class Standing:
     """The model `base` that stands although something remains, None where no quantity does; `estimator` has fitted it.
 
     Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
-    remains.
+    remains. `told` are values that need no fit, with their intervals, by dotted name.
     """
 
     estimator: Estimator
     base: Fit | None = None
     left_out: Mapping[str, LeftOut] = field(default_factory=dict)
     weights: Mapping[str, Weight] = field(default_factory=dict)
+    told: Mapping[str, Estimate] = field(default_factory=dict)
 
 
 def standing(
-    found: Found, progress: Progress = lambda _: None, jobs: int | None = None, deadline: Deadline | None = None
+    found: Found,
+    progress: Progress = lambda _: None,
+    jobs: int | None = None,
+    deadline: Deadline | None = None,
+    recording: Recording | None = None,
 ) -> Standing:
     """What stands beyond one explanation of all.
 
     What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
     on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
-    what remains.
+    what remains. What a controller vouches for in a single `recording` is named as well.
     """
     data, estimator = found.data, found.estimator
     deadline = deadline or Deadline()
@@ -55,13 +66,15 @@ def standing(
         return Standing(estimator, estimator.restated(fit), left_out)
     with workers(jobs, deadline) as pool:
         stood = around or _stood(found, pool, progress)
+    told = recording and witnessed(Signals.of(recording, recording.time.size), found.nominal)
+    stood = _vouched_for(stood, found, told) if told else stood
     if stood is None:
         return Standing(estimator)
     fitted = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
     base, weights = fitted.restated(stood.scored.fit), _by_effect(stood)
     if vouched is not None:
         return Standing(fitted, base, dict.fromkeys(weights, vouched))
-    return Standing(fitted, base, {}, weights)
+    return Standing(fitted, base, {}, weights, told.estimates if told and told.variant in stood.weights else {})
 
 
 def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
@@ -96,6 +109,32 @@ def _doubtful(stood: Supported, found: Found) -> bool:
     both = Explanation(known.explanation.drifted, named.explanation.variants)
     beside = estimator.fit(both, {**named.values, **{name: known.values[name] for name in both.drifted}})
     return estimator.validation_misfit(beside) > most
+
+
+def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Supported | None:
+    """What stands, and what the controller that made the input has `told`.
+
+    Of the sensor it is a second witness beside the recorded one, and no simulation has a say. What it tells of the
+    input the motion may not speak against. Parameters that bend for what is told are fitted beside it anew, where that
+    lowers the error on samples that validate by a tenth.
+    """
+    data, nominal = found.data, found.nominal
+    before = stood or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
+    own, estimator = before.scored.fit, Estimator(data, nominal)
+    if told.variant.effect in own.explanation.effects:
+        return stood
+    grown = estimator.at(own.explanation.plus(told.variant), own.values)
+    beside = scored(data, grown)
+    if EFFECT[told.variant.effect].stage != "sensor" and beside.cost > before.scored.cost + SIGNIFICANT:
+        return stood
+    known = found.recalibrated
+    refitted = estimator.fit(
+        Explanation(known.explanation.drifted, grown.explanation.variants), {**known.values, **own.values}
+    )
+    if estimator.validation_misfit(refitted) < BETTER**2 * estimator.validation_misfit(grown):
+        beside = scored(data, refitted)
+    weight = Weight(before.scored.cost - beside.cost, beside.left, instead=told.as_well, by_rule=told.share)
+    return Supported(nominal, beside, {**before.weights, told.variant: weight})
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

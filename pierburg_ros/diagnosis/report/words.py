@@ -79,6 +79,11 @@ def by_evidence(gain: float, without: str) -> str:
 
 def by_weight(weight: Weight) -> str:
     """Why an effect is named although something remains."""
+    if weight.by_rule is not None:
+        return (
+            "The controller that made the input vouches for it: the input follows from setpoint and angle by one rule, "
+            f"and {100.0 * weight.by_rule:.1f} % of what that rule leaves, squared, goes with it."
+        )
     seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
     gone = (
         "" if weight.explains is None else f" {100.0 * weight.explains:.0f} % of the mean squared error goes with it."

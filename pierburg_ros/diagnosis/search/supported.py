@@ -55,7 +55,8 @@ class Weight:
     costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
     are `expected` to show: its gain by their number over that of those that train. `explains` is the share of the mean
     squared error that goes with it, None where that was not asked; `plausible`: its values are such as 95 of 100
-    actuators have. `instead` are effects or drifting parameters that gain almost as much in its place.
+    actuators have. `instead` are effects or drifting parameters that gain almost as much in its place. `by_rule` is the
+    share of what a controller's rule leaves that goes with it, None where no controller vouches for it (`witness.py`).
     """
 
     gain: float
@@ -65,6 +66,7 @@ class Weight:
     explains: float | None = None
     plausible: bool = True
     instead: tuple[str, ...] = ()
+    by_rule: float | None = None
 
     @property
     def carried(self) -> float:
@@ -85,6 +87,8 @@ class Weight:
     @property
     def confidence(self) -> float:
         """How far it is believed: of equals each is as likely as another; what was asked otherwise by its share."""
+        if self.by_rule is not None:
+            return self.by_rule / (1 + len(self.instead))
         return self.carried if self.unseen is None else ALONE / (1 + len(self.instead))
 
 

@@ -1,0 +1,86 @@
+"""A controller as a second witness: what it tells of the sensor and of the log, and where it is silent."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.servo import LACKING, SERVO, TIME, in_loop
+
+from pierburg_ros.audit.signals import Signals
+from pierburg_ros.diagnosis.diagnose import evidence
+from pierburg_ros.diagnosis.remainder.standing import Standing, standing
+from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.search import Beam
+from pierburg_ros.diagnosis.search.witness import Witness, witnessed
+from pierburg_ros.proof.real.channels import with_effect
+from pierburg_ros.recording import Recording
+
+LOOP = in_loop()
+EFFECTS = {
+    "sensor_lag": {"time_constant": 0.03},
+    "sensor_hysteresis": {"width": 0.04},
+    "input_delay": {"delay": 0.04},
+    "pwm_deadband": {"width": 0.04},
+}
+
+
+def told(recording: Recording) -> Witness | None:
+    return witnessed(Signals.of(recording, recording.time.size), SERVO)
+
+
+def put_in(effect: str, recording: Recording = LOOP) -> Recording:
+    """Stated by other formulas than those that the rule is read by."""
+    supply = recording.command.__class__(TIME, np.full(TIME.size, 7.4))
+    return with_effect(replace(recording, supply_voltage=supply), effect, EFFECTS[effect], SERVO)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_the_rule_tells_what_was_put_in(effect):
+    found = told(put_in(effect))
+    assert found is not None and found.variant.effect == effect and not found.as_well
+    ((_, value),), (true,) = found.variant.fixed, EFFECTS[effect].values()
+    assert value == pytest.approx(true, rel=0.1)
+    (estimate,) = found.estimates.values()
+    assert estimate.low <= value <= estimate.high and estimate.identifiable
+    assert found.share > 0.9
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_a_limited_duty_shows_no_angle_and_does_no_harm(effect):
+    """A higher gain and larger movements meet the limit."""
+    steep = in_loop(gain=2.0, size=1.2)
+    assert np.mean(np.abs(steep.command.values) == 1.0) > 0.01
+    found = told(put_in(effect, steep))
+    assert found is not None and found.variant.effect == effect
+
+
+def test_a_faultless_loop_says_nothing():
+    assert all(told(in_loop(seed=seed)) is None for seed in range(3))
+
+
+def test_times_that_sampling_hides_are_not_told():
+    """A controller that computes from the last sample is 5 ms behind."""
+    assert told(in_loop(slow=1)) is None
+
+
+def test_without_setpoints_there_is_no_rule():
+    assert told(replace(put_in("sensor_lag"), setpoints=None)) is None
+
+
+def test_what_no_proportional_controller_made_has_no_rule():
+    """A duty that has nothing to do with setpoint and angle."""
+    other = in_loop(seed=5)
+    assert told(replace(put_in("sensor_lag"), command=other.command)) is None
+
+
+def stands(recording: Recording) -> Standing:
+    """What stands beside a remainder where the motion is described rightly."""
+    return standing(search(evidence([recording], LACKING), LACKING, beam=Beam(depth=0)), recording=recording)
+
+
+def test_the_motion_decides_between_a_dead_band_and_a_controller_that_makes_up_for_friction():
+    """Both step over a band around 0; with a dead band the motor gets no more than without."""
+    band, made_up = stands(put_in("pwm_deadband")), stands(in_loop(beyond=0.04))
+    assert set(band.weights) == {"pwm_deadband"} and set(band.told) == {"pwm_deadband.width"}
+    assert band.weights["pwm_deadband"].confidence > 0.9
+    assert not made_up.weights and not made_up.told
