@@ -73,14 +73,26 @@ def test_what_no_proportional_controller_made_has_no_rule():
     assert told(replace(put_in("sensor_lag"), command=other.command)) is None
 
 
-def stands(recording: Recording) -> Standing:
-    """What stands beside a remainder where the motion is described rightly."""
-    return standing(search(evidence([recording], LACKING), LACKING, beam=Beam(depth=0)), recording=recording)
+@pytest.fixture
+def stands(monkeypatch):
+    """What stands by the word of the controller alone, where the motion is described rightly."""
+    monkeypatch.setattr("pierburg_ros.diagnosis.remainder.standing._stood", lambda found, pool, progress: None)
+
+    def of(recording: Recording) -> Standing:
+        return standing(search(evidence([recording], LACKING), LACKING, beam=Beam(depth=0)), recording=recording)
+
+    return of
 
 
-def test_the_motion_decides_between_a_dead_band_and_a_controller_that_makes_up_for_friction():
+def test_the_motion_decides_between_a_dead_band_and_a_controller_that_makes_up_for_friction(stands):
     """Both step over a band around 0; with a dead band the motor gets no more than without."""
     band, made_up = stands(put_in("pwm_deadband")), stands(in_loop(beyond=0.04))
     assert set(band.weights) == {"pwm_deadband"} and set(band.told) == {"pwm_deadband.width"}
     assert band.weights["pwm_deadband"].confidence > 0.9
-    assert not made_up.weights and not made_up.told
+    assert made_up.base is None and not made_up.told
+
+
+def test_of_the_sensor_the_controller_alone_speaks(stands):
+    stood = stands(put_in("sensor_hysteresis"))
+    assert set(stood.weights) == {"sensor_hysteresis"} and stood.base is not None
+    assert stood.base.values["sensor_hysteresis.width"] == pytest.approx(0.04, rel=0.1)
