@@ -151,7 +151,9 @@ def nodes(data: Data) -> tuple[Signal, Signal]:
     The innermost ones of velocity stand where friction has a known sign: it changes between them.
     """
     motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
-    angles = np.concatenate([motion.angle[motion.moving] for motion in motions])
+    # behind a coarse converter nothing may be known to move
+    known = any(motion.moving.any() for motion in motions)
+    angles = np.concatenate([motion.angle[motion.moving] if known else motion.angle for motion in motions])
     speeds = np.concatenate([motion.velocity[motion.moving] for motion in motions])
     own = data.scales
     slow = MOVING * own.angle / own.time

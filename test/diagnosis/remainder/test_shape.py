@@ -140,3 +140,13 @@ def test_four_ways_to_recalibrate_differ_where_physics_is_missing():
     assert len(set(preloads)) == 4
     # What stiffens with the opening is a larger preload on average, whichever way it is fitted.
     assert min(preloads[1:]) > preloads[0]
+
+
+def test_nodes_stand_over_all_angles_where_nothing_is_known_to_move(monkeypatch):
+    """Behind a converter as coarse as the movements: a real recording of a servo ended in a traceback."""
+    data = data_on(recording({}, duration=12.0))
+    still = module.motion_of(data.runs[0], data.actuator, data.noise)
+    still = replace(still, moving=np.zeros_like(still.moving))
+    monkeypatch.setattr(module, "motion_of", lambda *_: still)
+    angle, _ = nodes(data)
+    assert angle.size > 1 and still.angle.min() <= angle[0] < angle[-1] <= still.angle.max()
