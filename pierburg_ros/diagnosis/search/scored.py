@@ -61,14 +61,9 @@ def _mean_square(residual: Signal) -> float:
     return float(np.mean(np.square(residual))) if residual.size else 0.0
 
 
-def estimator_beside(data: Data, nominal: Model, discrepancy: Discrepancy) -> Estimator:
-    """What fits beside a `discrepancy`: innovations, and how far values lie from what is plausible."""
-    return Estimator(data, nominal, discrepancy=discrepancy, unit=1.0)
-
-
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
     """`fit` with its most likely discrepancy, or fitted again with that, whichever is likelier."""
     first = scored(data, fit)
-    estimator = estimator_beside(data, nominal, first.discrepancy)
+    estimator = Estimator(data, nominal, discrepancy=first.discrepancy)
     again = scored(data, estimator.fit(fit.explanation, fit.values, BRIEF))
     return min(first, again, key=lambda each: each.cost)

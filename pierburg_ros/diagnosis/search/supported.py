@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
-from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, scored, settled
+from pierburg_ros.diagnosis.search.scored import Scored, scored, settled
+from pierburg_ros.diagnosis.search.screening import STARTS_TRIED
 from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
@@ -133,28 +134,16 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     weakest first.
     """
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
-    begun, confirmed = reached.left, Supported(nominal, reached, {})
+    begun, weighed = reached.left, Supported(nominal, reached, {})
     near = list(pool.map(lambda fit: settled(data, nominal, fit), _nearest(known)))
     for _ in range(MOST):
-        grown = _grown(data, nominal, reached, pool, progress)[:1]
-        likelier_ones = [each for each in (*grown, *near) if _likelier(each, reached)]
-        following = min(likelier_ones, key=lambda each: each.cost, default=None)
+        grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
+        following = min((each for each in grown if _likelier(each, reached)), key=lambda each: each.cost, default=None)
         if following is None:
             break
         weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
         reached = weighed.scored
-        passed_over = (_weighed(data, nominal, each, pool) for each in grown if each is not following)
-        heard = (_without(each, _unconfirmed, data, nominal, pool) for each in (weighed, *passed_over))
-        now = _likeliest(*heard)
-        if confirmed.weights and confirmed.scored.cost - now.scored.cost < SIGNIFICANT:
-            break
-        confirmed = _likeliest(confirmed, now)
-    return Beside(reached, begun, confirmed)
-
-
-def _likeliest(*confirmed: Supported) -> Supported:
-    """Of what unseen samples confirm that which makes the recordings likeliest."""
-    return min(confirmed, key=lambda each: each.scored.cost)
+    return Beside(reached, begun, _without(weighed, _unconfirmed, data, nominal, pool))
 
 
 def _nearest(known: Iterable[Fit]) -> list[Fit]:
@@ -242,16 +231,16 @@ def _with_rivals(named: Supported, data: Data, nominal: Model, pool: Executor, p
 
 @dataclass(frozen=True)
 class _Promise:
-    """An explanation to be fitted from a start, by the chi2 that a linear step promises."""
+    """An explanation to be fitted from some starts, by the chi2 that a linear step promises."""
 
     chi2: float
     explanation: Explanation
-    start: dict[str, float]
+    starts: list[dict[str, float]]
 
 
 def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
     """The likeliest explanations with one quantity more, the best first."""
-    estimator = estimator_beside(data, nominal, base.discrepancy)
+    estimator = Estimator(data, nominal, discrepancy=base.discrepancy)
     fit, drifts = estimator.restated(base.fit), drifting(nominal)
     tasks: list[tuple[Addition, list[Start]]] = [(name, []) for name in drifts]
     tasks += list(starts_of(data, fit.model).items())
@@ -259,7 +248,8 @@ def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: P
 
     def fitted(promise: _Promise) -> Fit:
         progress(f"{promise.explanation.label}, beside what remains")
-        return estimator.fit(promise.explanation, promise.start, BRIEF)
+        fits = (estimator.fit(promise.explanation, start, BRIEF) for start in promise.starts)
+        return min(fits, key=lambda fit: fit.chi2)
 
     followed = sorted(promises, key=lambda promise: promise.chi2)[:FOLLOWED]
     fits = sorted(pool.map(fitted, followed), key=lambda fit: fit.chi2)[:SETTLED]
@@ -276,9 +266,9 @@ def _promise(
     if explanation is None:
         return None
     if isinstance(addition, str):
-        return _Promise(promised_by_drift(estimator.at(explanation, fit.values)), explanation, fit.values)
-    ways = promised(estimator, fit, addition, starts)
-    return _Promise(ways[0][0], explanation, {**fit.values, **ways[0][1]}) if ways else None
+        return _Promise(promised_by_drift(estimator.at(explanation, fit.values)), explanation, [fit.values])
+    ways = promised(estimator, fit, addition, starts)[:STARTS_TRIED]
+    return _Promise(ways[0][0], explanation, [{**fit.values, **start} for _, start in ways]) if ways else None
 
 
 def _idle(quantity: Quantity, weight: Weight) -> bool:
@@ -299,7 +289,7 @@ def _without(
     while leaving := {quantity: each.gain for quantity, each in weighed.weights.items() if out(quantity, each)}:
         weakest = min(leaving, key=lambda quantity: leaving[quantity])
         best = weighed.scored
-        estimator = estimator_beside(data, nominal, best.discrepancy)
+        estimator = Estimator(data, nominal, discrepancy=best.discrepancy)
         rest = estimator.fit(without(best.fit.explanation, weakest), best.fit.values, BRIEF)
         weighed = _weighed(data, nominal, settled(data, nominal, rest), pool)
     return weighed
@@ -323,7 +313,7 @@ def _weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Suppor
 
 def _lacking(data: Data, nominal: Model, best: Scored, quantity: Quantity) -> Scored:
     """The best without a quantity, its others fitted again with their own discrepancy; itself where that cannot be."""
-    estimator = estimator_beside(data, nominal, best.discrepancy)
+    estimator = Estimator(data, nominal, discrepancy=best.discrepancy)
     rest = without(best.fit.explanation, quantity)
     try:
         return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF))
