@@ -54,15 +54,14 @@ SETTLED = 8
 class Witness:
     """An effect at the strength that the rule tells, and the mean squares [rad^2] that the rule leaves.
 
-    The strength lies `between` two values, and their geometric mean stands for it. `without` it and `beside` it, of so
-    many `samples` that count as one each. `as_well` are effects that the rule tells no worse.
+    The strength lies `between` two values, and their geometric mean stands for it. `without` it and `beside` it.
+    `as_well` are effects that the rule tells no worse.
     """
 
     variant: Variant
     between: tuple[float, float]
     without: float
     beside: float
-    samples: float
     as_well: tuple[str, ...] = ()
 
     @property
@@ -91,7 +90,7 @@ def witnessed(signals: Signals, nominal: Model) -> Witness | None:
     if signals.setpoints is None or signals.quantity == "speed":
         return None
     loop = _Loop.of(signals, nominal, signals.setpoints)
-    if loop is None:
+    if loop is None or not np.any(loop.undisturbed):
         return None
     asked = (_told(effect, loop, nominal) for effect in possible(nominal.actuator))
     told = sorted((each for each in asked if each and each.share >= TOLD), key=lambda each: each.beside)
@@ -117,7 +116,7 @@ def _told(effect: Effect, loop: _Loop, nominal: Model) -> Witness | None:
     if between[0] <= nominal.values[f"{effect.id}.{name}"]:
         return None
     variant = Variant(effect.id, (), ((name, math.sqrt(between[0] * between[1])),))
-    return Witness(variant, between, _mean_square(loop.undisturbed), float(leaves[place]), samples)
+    return Witness(variant, between, _mean_square(loop.undisturbed), float(leaves[place]))
 
 
 def _way(effect: Effect, loop: _Loop) -> tuple[str, Left | None, float]:
