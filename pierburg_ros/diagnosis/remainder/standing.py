@@ -114,9 +114,10 @@ def _doubtful(stood: Supported, found: Found) -> bool:
 def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Supported | None:
     """What stands, and what the controller that made the input has `told`.
 
-    Of the sensor it is a second witness beside the recorded one, and no simulation has a say. What it tells of the
-    input the motion may not speak against. Parameters that bend for what is told are fitted beside it anew, where that
-    lowers the error on samples that validate by a tenth.
+    Of the sensor's play it is a second witness beside the recorded angle, and no simulation has a say. What it tells of
+    the input the motion may not speak against. For a lag it has to speak: the derivative of a controller does the same
+    to the rule. Parameters that bend for what is told are fitted beside it anew, where that lowers the error on samples
+    that validate by a tenth.
     """
     data, nominal = found.data, found.nominal
     before = stood or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
@@ -125,7 +126,10 @@ def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Suppor
         return stood
     grown = estimator.at(own.explanation.plus(told.variant), own.values)
     beside = scored(data, grown)
-    if EFFECT[told.variant.effect].stage != "sensor" and beside.cost > before.scored.cost + SIGNIFICANT:
+    effect = EFFECT[told.variant.effect]
+    if effect.lag is not None and beside.cost >= before.scored.cost:
+        return stood
+    if effect.stage != "sensor" and beside.cost > before.scored.cost + SIGNIFICANT:
         return stood
     known = found.recalibrated
     refitted = estimator.fit(

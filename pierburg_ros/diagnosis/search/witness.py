@@ -5,6 +5,9 @@ duty shows the angle on which the controller acted. Where the recorded angle tra
 a play that the controller does not see; where the duty came before the setpoint and the angle that it follows from, it
 takes effect later than it was logged; where it steps over a band around 0, its controller makes up for a dead band. No
 simulation has to be right for this. It tells nothing of a sensor whose faults the controller shares.
+
+A controller with an integral is none of these: beside a lag its rule seems to explain most of what it leaves, but not
+all. One with a derivative looks like a proportional one behind a lag, exactly; there the motion decides.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
-from pierburg_ros.audit.loop import free_of_limits
+from pierburg_ros.audit.loop import EXACT, free_of_limits
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.effects import Effect
@@ -29,9 +32,6 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Channel
 
-EXACT = 0.002
-"""Mean square that a rule leaves over that of the recorded angle, up to which it is one. Measured: a servo's own loop
-leaves 0.0003 at most, undisturbed or with an effect put into its channels and found (n = 39)."""
 TOLD = 0.75
 """Share of the mean square of what the rule leaves that has to go with an effect: the error of the rule halves.
 Measured: 0.89 to 0.9999 goes with effects put into a servo's recordings (n = 15), and 0.54 at most with what is found
@@ -85,7 +85,8 @@ Left = Callable[[float], Signal]
 def witnessed(signals: Signals, nominal: Model) -> Witness | None:
     """What the rule of a proportional controller tells of the sensor or the log of its input; None where it is silent.
 
-    It has to explain most of what the rule leaves otherwise, and a time has to be longer than sampling tells.
+    It has to explain most of what the rule leaves otherwise, and a time has to be longer than sampling tells. The rule
+    beside it has to be exact: of the loop's error, which the duty follows from, next to nothing is left.
     """
     if signals.setpoints is None or signals.quantity == "speed":
         return None
@@ -94,7 +95,7 @@ def witnessed(signals: Signals, nominal: Model) -> Witness | None:
         return None
     asked = (_told(effect, loop, nominal) for effect in possible(nominal.actuator))
     told = sorted((each for each in asked if each and each.share >= TOLD), key=lambda each: each.beside)
-    if not told or told[0].beside > EXACT * loop.size or math.isinf(told[0].between[1]):
+    if not told or told[0].beside > (1.0 - EXACT) * loop.error or math.isinf(told[0].between[1]):
         return None
     best, *others = told
     return replace(best, as_well=tuple(each.variant.effect for each in others if each.beside < 2.0 * best.beside))
@@ -161,9 +162,9 @@ class _Loop:
         return _Loop(signals.time, angle, setpoint, free, command, signals.interval)
 
     @property
-    def size(self) -> float:
-        """Variance of the recorded angle [rad^2]."""
-        return float(np.var(self.angle[self.free]))
+    def error(self) -> float:
+        """Variance of how far the recorded angle is from the setpoint [rad^2]."""
+        return float(np.var((self.angle - self.setpoint)[self.free]))
 
     @cached_property
     def duties(self) -> list[Signal]:
@@ -181,8 +182,9 @@ class _Loop:
 
         It was computed between this sample and the last, half an interval before on average.
         """
-        before = self.command.at(self.time - max(time - 0.5 * self.interval, 0.0))
-        return _left(self.angle - self.setpoint, before, np.ones_like(self.time), self.free)
+        then = self.time - max(time - 0.5 * self.interval, 0.0)
+        free: Flags = np.interp(then, self.time, self.free) == 1.0
+        return _left(self.angle - self.setpoint, self.command.at(then), np.ones_like(self.time), free)
 
     def stepping(self, width: float) -> Signal:
         """What is left where the duty steps over a band of a `width` around 0."""

@@ -73,6 +73,13 @@ def test_what_no_proportional_controller_made_has_no_rule():
     assert told(replace(put_in("sensor_lag"), command=other.command)) is None
 
 
+@pytest.mark.parametrize("gain", [1.1, 2.0, 4.0])
+def test_a_controller_with_an_integral_has_another_rule(gain):
+    """A lag seems to explain most of what its rule leaves, but of the loop's error too much is left."""
+    for integral in (0.5, 1.0, 2.0):
+        assert told(in_loop(gain=gain, integral=integral)) is None
+
+
 @pytest.fixture
 def stands(monkeypatch):
     """What stands by the word of the controller alone, where the motion is described rightly."""
@@ -92,7 +99,17 @@ def test_the_motion_decides_between_a_dead_band_and_a_controller_that_makes_up_f
     assert made_up.base is None and not made_up.told
 
 
-def test_of_the_sensor_the_controller_alone_speaks(stands):
+def test_the_motion_decides_between_a_lag_and_a_controller_with_a_derivative(stands):
+    """The rule is the same; with a lag the shaft is ahead of what is recorded."""
+    derived = in_loop(derivative=0.03)
+    found = told(derived)
+    assert found is not None and found.variant.effect == "sensor_lag"
+    lagging, alone = stands(put_in("sensor_lag")), stands(derived)
+    assert set(lagging.weights) == {"sensor_lag"} and set(lagging.told) == {"sensor_lag.time_constant"}
+    assert alone.base is None and not alone.told
+
+
+def test_of_a_play_the_controller_alone_speaks(stands):
     stood = stands(put_in("sensor_hysteresis"))
     assert set(stood.weights) == {"sensor_hysteresis"} and stood.base is not None
     assert stood.base.values["sensor_hysteresis.width"] == pytest.approx(0.04, rel=0.1)
