@@ -85,13 +85,14 @@ def by_weight(weight: Weight) -> str:
             f"and {100.0 * weight.by_rule:.1f} % of what that rule leaves, squared, goes with it."
         )
     seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
-    gone = (
-        "" if weight.explains is None else f" {100.0 * weight.explains:.0f} % of the mean squared error goes with it."
-    )
+    share = ""
+    if weight.explains is not None:
+        times = math.sqrt(weight.explains / max(1.0 - weight.explains, 1e-6))
+        share = f" It moves the signal by {times:.2g} times what remains."
     return (
         f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
         f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
-        f"{seen}{gone}"
+        f"{seen}{share}"
     )
 
 

@@ -148,9 +148,13 @@ def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, floa
 def difference(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
     """What an effect added to `base` changes in the training samples [noise]; None where it cannot be added."""
     try:
-        return base.solution.residual - estimator.residual(*_added(base, variant, start))
+        added = estimator.residual(*_added(base, variant, start))
     except InputError:
         return None
+    # what is known of the values of `base` stands behind the samples, and stays as it is
+    changed = np.zeros_like(base.solution.residual)
+    changed[: added.size] = base.solution.residual[: added.size] - added
+    return changed
 
 
 def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | None]:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -19,23 +16,13 @@ class Scored:
     """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two.
 
     `unseen` is the same of the samples that validate, when those that train are known, with the discrepancy that is
-    most likely on both: what remains there may be larger. `errors` are the mean squares [noise^2] of the residual on
-    those that train and on those that validate.
+    most likely on both: what remains there may be larger.
     """
 
     fit: Fit
     discrepancy: Discrepancy
     cost: float
     unseen: float = 0.0
-    errors: tuple[float, float] = (0.0, 0.0)
-
-    def explains(self, without: Scored) -> float:
-        """By which share the mean square of the error is smaller than `without` what this fit has more.
-
-        On samples that train or on those that validate, whichever gain less.
-        """
-        pairs = zip(self.errors, without.errors, strict=True)
-        return 1.0 - max(own / max(other, 1e-300) for own, other in pairs)
 
     @property
     def left(self) -> float:
@@ -52,18 +39,17 @@ def scored(data: Data, fit: Fit) -> Scored:
     both = Kalman(data, data.train | data.validation)
     larger = both.most_likely(residual)
     unseen = evidence(both.filtered(larger), residual) - evidence(kalman.filtered(larger), residual)
-    errors = _mean_square(residual[data.train]), _mean_square(residual[data.validation])
-    return Scored(fit, discrepancy, cost, unseen, errors)
+    return Scored(fit, discrepancy, cost, unseen)
 
 
-def _mean_square(residual: Signal) -> float:
-    """Mean square of a residual, 0 where there are no samples."""
-    return float(np.mean(np.square(residual))) if residual.size else 0.0
+def estimator_beside(data: Data, nominal: Model, discrepancy: Discrepancy) -> Estimator:
+    """What fits beside a `discrepancy`: innovations, and how far values lie from what is plausible."""
+    return Estimator(data, nominal, discrepancy=discrepancy, unit=1.0)
 
 
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
     """`fit` with its most likely discrepancy, or fitted again with that, whichever is likelier."""
     first = scored(data, fit)
-    estimator = Estimator(data, nominal, discrepancy=first.discrepancy)
+    estimator = estimator_beside(data, nominal, first.discrepancy)
     again = scored(data, estimator.fit(fit.explanation, fit.values, BRIEF))
     return min(first, again, key=lambda each: each.cost)

@@ -37,7 +37,10 @@ TIED = Effect(
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
-        (Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)), "gain 90. 65 % of the mean squared error goes"),
+        (
+            Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)),
+            "gain 90. It moves the signal by 1.4 times what remains",
+        ),
     ],
     ids=[
         "evidence",

@@ -1,5 +1,6 @@
 """Quantities that recordings support although something remains; none where only that is there."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -35,6 +36,19 @@ def disturbed(changes: dict[str, float], seed: int) -> Recording:
     wave = np.interp(clean.time, knots, random.normal(0.0, 10.0 * NOISE, knots.size))
     wave[clean.time < 0.5] = 0.0
     return replace(clean, measured=clean.measured + wave)
+
+
+class Inline(Executor):
+    """Does what it is asked at once, without other processes."""
+
+    def map(self, function, *arguments, **_):
+        return map(function, *arguments)
+
+
+def beginning(data: Data) -> Beside:
+    """Nothing is known beside what the nominal model leaves."""
+    nominal = scored(data, Estimator(data, NOMINAL).at(Explanation()))
+    return Beside(nominal, nominal.left, Supported(NOMINAL, nominal, {}))
 
 
 def found_in(changes: dict[str, float], seed: int = 0) -> Supported | None:
@@ -130,12 +144,25 @@ def test_what_unseen_samples_confirm_is_not_believed_where_it_explains_little():
     assert much.believed and not replace(much, plausible=False).believed
 
 
-def test_what_fits_only_the_samples_that_train_explains_nothing():
-    data = data_on(recording({}, duration=4.0))
-    nominal = scored(data, Estimator(data, NOMINAL).at(Explanation()))
-    with_it, without = (replace(nominal, errors=errors) for errors in ((1.0, 9.0), (4.0, 9.0)))
-    assert with_it.explains(without) == pytest.approx(0.0)
-    assert replace(with_it, errors=(1.0, 2.25)).explains(without) == pytest.approx(0.75)
+def test_a_name_carries_its_part_of_the_evidence(monkeypatch: pytest.MonkeyPatch):
+    """As load-dependent friction that gains 680 where static friction is missed, and 11,000 is left."""
+    late = data_on(disturbed({"input_delay.delay": 0.02}, seed=0))
+    fit = Estimator(late, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02})
+    found = likelier(beginning(late), fit, late, NOMINAL, Inline())
+    assert set(found.confirmed.weights) == {DELAY}
+    monkeypatch.setattr(module, "CARRIES", 1.01)
+    assert not likelier(beginning(late), fit, late, NOMINAL, Inline()).confirmed.weights
+
+
+def test_values_that_no_actuator_has_are_not_heard():
+    """However likely they make it: a Stribeck velocity of 30 rad/s is that of no valve."""
+    data = data_on(disturbed({"static_friction.breakaway_torque": 0.3, "static_friction.stribeck_velocity": 30.0}, 0))
+    sticks = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
+    values = {"static_friction.breakaway_torque": 0.3, "static_friction.stribeck_velocity": 30.0}
+    fit = Estimator(data, NOMINAL).at(Explanation((), (sticks,)), values)
+    begin = beginning(data)
+    assert settled(data, NOMINAL, fit).cost < begin.reached.cost - 1000.0
+    assert likelier(begin, fit, data, NOMINAL, Inline()) is begin
 
 
 @pytest.mark.parametrize(("delay", "told"), [(0.0005, True), (0.02, False)])
