@@ -58,9 +58,10 @@ class Weight:
     Left is how much less likely the residual is than white noise of the sensor's size. `unseen` is what leaving it out
     costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
     are `expected` to show: its gain by their number over that of those that train. `explains` is the share of the mean
-    square that it moves, beside what remains, None where that was not asked; `plausible`: its values are such as 95 of 100
-    actuators have. `instead` are effects or drifting parameters that gain almost as much in its place. `by_rule` is the
-    share of what a controller's rule leaves that goes with it, None where no controller vouches for it (`witness.py`).
+    square that it moves, beside what remains, None where that was not asked; `plausible`: its values are such as 95 of
+    100 actuators have. `instead` are effects or drifting parameters that gain almost as much in its place. `by_rule` is
+    the share of what a controller's rule leaves that goes with it, None where no controller vouches for it
+    (`witness.py`).
     """
 
     gain: float
