@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.workers import workers
 
 BESIDE = 4
 """Explanations beside which disturbances are tried, the nominal model being one. Work: each costs some hundred
@@ -44,11 +47,12 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
     if found.data.in_stretches:
         return found
     fits = _promising(found)
-    for way in (_without_stretches, _beside_slow_quantities):
-        for tried, beam in way(found, fits, recording, deadline, progress):
-            again = search(tried, found.nominal, progress, jobs, beam, deadline)
-            if adequate(again.chosen):
-                return again
+    with workers(jobs, deadline) as pool:
+        for way in (_without_stretches, _beside_slow_quantities):
+            for tried, beam in way(found, fits, recording, pool, progress):
+                again = search(tried, found.nominal, progress, jobs, beam, deadline)
+                if adequate(again.chosen):
+                    return again
     return found
 
 
@@ -65,37 +69,36 @@ def _promising(found: Found) -> list[Fit]:
 
 
 def _without_stretches(
-    found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
+    found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
 ) -> Iterator[Attempt]:
     """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere.
 
     Where none does, the first of them once more, for what a single quantity explains that the stretch has hidden.
     """
     estimator, others = Estimator(found.data, found.nominal), list[Data]()
-    for fit in fits:
-        deadline.check()
-        progress(f"{fit.explanation.label}, but for one stretch")
-        if told := without_stretch(found.data, estimator, fit, recording):
-            rest, left = told
-            if left.ratio <= EXPLAINED:
-                yield rest, None
-            else:
-                others.append(rest)
+    progress("what has been tried, but for one stretch")
+    for told in pool.map(lambda fit: without_stretch(found.data, estimator, fit, recording), fits):
+        if told is None:
+            continue
+        rest, left = told
+        if left.ratio <= EXPLAINED:
+            yield rest, None
+        else:
+            others.append(rest)
     for rest in others[:1]:
         yield rest, Beam(depth=1)
 
 
 def _beside_slow_quantities(
-    found: Found, fits: Sequence[Fit], recording: Recording, deadline: Deadline, progress: Progress
+    found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
 ) -> Iterator[Attempt]:
     """The recording as if a quantity that wandered had been measured, beside which an explanation leaves nothing."""
     data, nominal = found.data, found.nominal
-    estimator = Estimator(data, nominal)
+    estimator, ways = Estimator(data, nominal), slow_quantities(recording, data, nominal)
     for fit in fits:
-        for slow in slow_quantities(recording, data, nominal):
-            deadline.check()
-            progress(f"{fit.explanation.label}, while something wanders")
-            course = wandered(data, fit, slow, estimator)
+        progress(f"{fit.explanation.label}, while something wanders")
+        courses = list(pool.map(partial(wandered, data, fit, estimator=estimator), ways))
+        for slow, course in zip(ways, courses, strict=True):
             if course.trained <= EXPLAINED and course.validated <= CONFIRMED:
                 known = slow.known(recording, course.course, course.values)
                 remark = f"{recording.name}: {slow.remark(course.course, course.values)}"

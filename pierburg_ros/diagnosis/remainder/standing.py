@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
 from pierburg_ros.audit.signals import Signals
@@ -24,9 +23,10 @@ from pierburg_ros.estimation.intervals import Estimate
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
-SHARED = 0.6
-"""Share of the time that is left in which effects are added that several recordings share. Work: the rest is for
-intervals and for the shape of what remains; not varied."""
+ADDING = 0.6
+"""Share of the time that is left in which effects are added that several recordings share, or quantities that a single
+one supports. Work: the rest is for what could stand in their place, for intervals and for the shape of what remains;
+not varied."""
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,9 @@ def standing(
     around = supported_around(data, found.nominal)
     vouched = vouched_around(data, found.nominal) if around and data.several else None
     if data.several and vouched is None:
-        fit, left_out = shared_effects(found, progress, jobs, deadline.part(SHARED))
+        fit, left_out = shared_effects(found, progress, jobs, deadline.part(ADDING))
         return Standing(estimator, estimator.restated(fit), left_out)
-    with workers(jobs, deadline) as pool:
-        stood = around or _stood(found, pool, progress)
+    stood = around or _stood(found, progress, jobs, deadline)
     told = recording and witnessed(Signals.of(recording, recording.time.size), found.nominal)
     stood = _vouched_for(stood, found, told) if told else stood
     if stood is None:
@@ -77,16 +76,19 @@ def standing(
     return Standing(fitted, base, {}, weights, told.estimates if told and told.variant in stood.weights else {})
 
 
-def _stood(found: Found, pool: Executor, progress: Progress) -> Supported | None:
+def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Supported | None:
     """What unseen samples of a single recording confirm and nothing simpler stands for, and the play of its sensor.
 
     A play is read from the samples themselves: it needs none of the others.
     """
     data, nominal = found.data, found.nominal
     nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
-    added = found.beside or supported(data, nominal, found.fits.values(), pool, progress)
-    beside = likelier(added, nearest, data, nominal, pool)
-    named = told_apart(beside.confirmed, data, nominal, pool, progress)
+    with workers(jobs, deadline.part(ADDING)) as pool:
+        added = found.beside or supported(data, nominal, found.fits.values(), pool, progress)
+    deadline.stopped |= added.stopped
+    with workers(jobs, deadline) as pool:
+        beside = likelier(added, nearest, data, nominal, pool)
+        named = told_apart(beside.confirmed, data, nominal, pool, progress)
     if _doubtful(named, found):
         named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
     both = with_play(named, beside.reached.fit, data, nominal)

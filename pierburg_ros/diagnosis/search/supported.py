@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
+from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.moved import moved
@@ -115,12 +116,13 @@ class Beside:
     """What recordings say when they are counted against what remains.
 
     The likeliest explanation `reached`, what the nominal model leaves (`begun`, in -2 log likelihood), and what of it
-    unseen samples have `confirmed`.
+    unseen samples have `confirmed`; where it was `stopped`, what was known by then.
     """
 
     reached: Scored
     begun: float
     confirmed: Supported
+    stopped: bool = False
 
     @property
     def open(self) -> bool:
@@ -141,18 +143,23 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     """
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     begun, confirmed = reached.left, Supported(nominal, reached, {})
-    begin = _nearest(fit for fit in known if not _strange(fit, data, nominal))
-    near = _plausible(pool.map(lambda fit: settled(data, nominal, fit), begin), data, nominal)
-    for _ in range(MOST):
-        grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
-        following = min((each for each in grown if _likelier(each, reached)), key=lambda each: each.cost, default=None)
-        if following is None:
-            break
-        weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
-        reached = weighed.scored
-        now = _without(weighed, _unconfirmed, data, nominal, pool)
-        confirmed = _likelier_of(confirmed, now)
-    return Beside(reached, begun, confirmed)
+    stopped = False
+    try:
+        begin = _nearest(fit for fit in known if not _strange(fit, data, nominal))
+        near = _plausible(pool.map(lambda fit: settled(data, nominal, fit), begin), data, nominal)
+        for _ in range(MOST):
+            grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
+            likelier_ones = [each for each in grown if _likelier(each, reached)]
+            if not likelier_ones:
+                break
+            following = min(likelier_ones, key=lambda each: each.cost)
+            weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
+            reached = weighed.scored
+            now = _without(weighed, _unconfirmed, data, nominal, pool)
+            confirmed = _likelier_of(confirmed, now)
+    except OutOfTime:
+        stopped = True
+    return Beside(reached, begun, confirmed, stopped)
 
 
 def _likelier_of(*confirmed: Supported) -> Supported:
@@ -196,7 +203,7 @@ def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executo
         if beside.reached.cost - reached.cost >= SIGNIFICANT:
             weighed = _weighed(data, nominal, reached, pool)
             now = _without(weighed, _unconfirmed, data, nominal, pool)
-            return Beside(reached, beside.begun, _likelier_of(beside.confirmed, now))
+            return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
     return beside
 
 

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
+from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search import supported as module
 from pierburg_ros.diagnosis.search.scored import scored, settled
 from pierburg_ros.diagnosis.search.supported import (
     CONFIRMED,
+    FOLLOWED,
     Beside,
     Supported,
     Weight,
@@ -68,6 +70,21 @@ def test_an_effect_is_named_beside_what_no_effect_makes():
     assert found is not None and found.scored.fit.explanation.effects == ("input_delay",)
     assert found.scored.fit.values["input_delay.delay"] == pytest.approx(0.02, abs=0.001)
     assert found.scored.discrepancy.size > 3.0
+
+
+def test_what_is_confirmed_when_the_time_is_over_is_kept():
+    """The second round is not finished."""
+    data, told = data_on(disturbed({"input_delay.delay": 0.02}, 0)), list[str]()
+
+    def tell(what: str) -> None:
+        told.append(what)
+        if len(told) > FOLLOWED:
+            raise OutOfTime
+
+    beside = supported(data, NOMINAL, (), Inline(), tell)
+    assert beside.stopped and set(beside.confirmed.weights) == {DELAY}
+    told.extend([""] * FOLLOWED)
+    assert supported(data, NOMINAL, (), Inline(), tell).confirmed.weights == {}
 
 
 def test_nothing_is_named_where_only_that_is_there():

@@ -83,7 +83,7 @@ def test_a_controller_with_an_integral_has_another_rule(gain):
 @pytest.fixture
 def stands(monkeypatch):
     """What stands by the word of the controller alone, where the motion is described rightly."""
-    monkeypatch.setattr("pierburg_ros.diagnosis.remainder.standing._stood", lambda found, pool, progress: None)
+    monkeypatch.setattr("pierburg_ros.diagnosis.remainder.standing._stood", lambda *_: None)
 
     def of(recording: Recording) -> Standing:
         return standing(search(evidence([recording], LACKING), LACKING, beam=Beam(depth=0)), recording=recording)
