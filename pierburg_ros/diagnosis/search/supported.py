@@ -149,11 +149,10 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
         near = _plausible(pool.map(lambda fit: settled(data, nominal, fit), begin), data, nominal)
         for _ in range(MOST):
             grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
-            likelier_ones = [each for each in grown if _likelier(each, reached)]
-            if not likelier_ones:
+            better = sorted((each for each in grown if _likelier(each, reached)), key=lambda each: each.cost)
+            if not better:
                 break
-            following = min(likelier_ones, key=lambda each: each.cost)
-            weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
+            weighed = _without(_weighed(data, nominal, better[0], pool), _idle, data, nominal, pool)
             reached = weighed.scored
             now = _without(weighed, _unconfirmed, data, nominal, pool)
             confirmed = _likelier_of(confirmed, now)
@@ -199,12 +198,11 @@ def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executo
 
     Quantities that are added one by one may miss what a search has found together.
     """
-    for reached in _plausible([settled(data, nominal, fit)], data, nominal):
-        if beside.reached.cost - reached.cost >= SIGNIFICANT:
-            weighed = _weighed(data, nominal, reached, pool)
-            now = _without(weighed, _unconfirmed, data, nominal, pool)
-            return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
-    return beside
+    reached = settled(data, nominal, fit)
+    if beside.reached.cost - reached.cost < SIGNIFICANT or _strange(reached.fit, data, nominal):
+        return beside
+    now = _without(_weighed(data, nominal, reached, pool), _unconfirmed, data, nominal, pool)
+    return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
 
 
 def confirmed_beside(fit: Fit, data: Data, nominal: Model, pool: Executor) -> bool:
