@@ -91,7 +91,7 @@ def witnessed(signals: Signals, nominal: Model) -> Witness | None:
     if signals.setpoints is None or signals.quantity == "speed":
         return None
     loop = _Loop.of(signals, nominal, signals.setpoints)
-    if loop is None or not np.any(loop.undisturbed):
+    if loop is None or loop.exact:
         return None
     asked = (_told(effect, loop, nominal) for effect in possible(nominal.actuator))
     told = sorted((each for each in asked if each and each.share >= TOLD), key=lambda each: each.beside)
@@ -166,6 +166,11 @@ class _Loop:
         """Variance of how far the recorded angle is from the setpoint [rad^2]."""
         return float(np.var((self.angle - self.setpoint)[self.free]))
 
+    @property
+    def exact(self) -> bool:
+        """Whether the rule leaves no more than rounding to single precision, which tells nothing."""
+        return _mean_square(self.undisturbed) <= float(np.finfo(np.float32).eps) ** 2 * self.error
+
     @cached_property
     def duties(self) -> list[Signal]:
         """The duty as it was some samples before and after."""
@@ -180,10 +185,13 @@ class _Loop:
     def delayed(self, time: float) -> Signal:
         """What is left where the duty acts a `time` [s] after it was logged.
 
-        It was computed between this sample and the last, half an interval before on average.
+        It was computed between this sample and the last, half an interval before on average. Where too few samples
+        tell, it is what is left undisturbed.
         """
         then = self.time - max(time - 0.5 * self.interval, 0.0)
         free: Flags = np.interp(then, self.time, self.free) == 1.0
+        if np.count_nonzero(free) < FEWEST:
+            return self.undisturbed
         return _left(self.angle - self.setpoint, self.command.at(then), np.ones_like(self.time), free)
 
     def stepping(self, width: float) -> Signal:

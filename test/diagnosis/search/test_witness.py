@@ -1,5 +1,6 @@
 """A controller as a second witness: what it tells of the sensor and of the log, and where it is silent."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +12,9 @@ from pierburg_ros.diagnosis.diagnose import evidence
 from pierburg_ros.diagnosis.remainder.standing import Standing, standing
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.search import Beam
-from pierburg_ros.diagnosis.search.witness import Witness, witnessed
+from pierburg_ros.diagnosis.search.witness import FEWEST, Witness, witnessed
 from pierburg_ros.proof.real.channels import with_effect
-from pierburg_ros.recording import Recording
+from pierburg_ros.recording import Channel, Recording
 
 LOOP = in_loop()
 EFFECTS = {
@@ -61,6 +62,24 @@ def test_a_faultless_loop_says_nothing():
 def test_times_that_sampling_hides_are_not_told():
     """A controller that computes from the last sample is 5 ms behind."""
     assert told(in_loop(slow=1)) is None
+
+
+def test_a_duty_that_is_limited_but_for_the_end_tells_no_delay(monkeypatch):
+    """Delayed by more than that end, none of its samples is free."""
+    monkeypatch.setattr("pierburg_ros.diagnosis.search.witness.FAR", 30.0)
+    few = FEWEST + 10
+    limited = np.where(np.sin(40.0 * TIME) > 0.0, 1.0, -1.0)
+    duty = np.where(np.arange(TIME.size) < TIME.size - few, limited, LOOP.command.values)
+    noisy = LOOP.measured + np.random.default_rng(0).normal(0.0, 0.001, TIME.size)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert told(replace(LOOP, measured=noisy, command=Channel(TIME, duty))) is None
+
+
+def test_what_rounding_leaves_of_a_rule_is_no_play():
+    few = np.arange(TIME.size) >= TIME.size - FEWEST - 10
+    limited = np.where(few, LOOP.command.values, np.where(np.sin(40.0 * TIME) > 0.0, 1.0, -1.0))
+    assert told(replace(LOOP, command=Channel(TIME, limited))) is None
 
 
 def test_without_setpoints_there_is_no_rule():
