@@ -77,10 +77,8 @@ def _without_stretches(
     """
     estimator, others = Estimator(found.data, found.nominal), list[Data]()
     progress("what has been tried, but for one stretch")
-    for told in pool.map(lambda fit: without_stretch(found.data, estimator, fit, recording), fits):
-        if told is None:
-            continue
-        rest, left = told
+    told = pool.map(lambda fit: without_stretch(found.data, estimator, fit, recording), fits)
+    for rest, left in filter(None, told):
         if left.ratio <= EXPLAINED:
             yield rest, None
         else:

@@ -152,9 +152,8 @@ def difference(estimator: Estimator, base: Fit, variant: Variant, start: Start) 
     except InputError:
         return None
     # what is known of the values of `base` stands behind the samples, and stays as it is
-    changed = np.zeros_like(base.solution.residual)
-    changed[: added.size] = base.solution.residual[: added.size] - added
-    return changed
+    before = base.solution.residual
+    return np.pad(before[: added.size] - added, (0, before.size - added.size))
 
 
 def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | None]:

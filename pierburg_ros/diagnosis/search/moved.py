@@ -24,16 +24,17 @@ def moved(data: Data, nominal: Model, fit: Fit) -> dict[Quantity, float]:
     """
     every, own = Estimator(all_training(data), nominal), fit.explanation
     drifts = tuple(dict.fromkeys((*own.drifted, *drifting(nominal))))
-    slopes = every.at(Explanation(drifts, own.variants), fit.values).solution.jacobian
-    columns = dict(zip(Explanation(drifts, own.variants).names, slopes.T, strict=True))
+    larger = every.at(Explanation(drifts, own.variants), fit.values)
+    columns = dict(zip(larger.explanation.names, larger.solution.jacobian.T, strict=True))
     remains = data.residual(fit.model, fit.switch)
 
     def share(quantity: Quantity) -> float:
+        rest = without(own, quantity)
         try:
-            lacking = every.at(without(own, quantity), fit.values)
+            lacking = every.models(rest, {name: fit.values[name] for name in rest.names})
         except InputError:
             return 0.0
-        moves = data.residual(lacking.model, lacking.switch) - remains
+        moves = data.residual(*lacking) - remains
         beside = [name for name in own.drifted if name != quantity]
         more = [name for name in drifts if name not in own.drifted] if isinstance(quantity, Variant) else []
         ways = ([columns[name] for name in (*beside, *also)] for also in [(), *((name,) for name in more)])

@@ -146,13 +146,14 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     stopped = False
     try:
         begin = _nearest(fit for fit in known if not _strange(fit, data, nominal))
-        near = _plausible(pool.map(lambda fit: settled(data, nominal, fit), begin), data, nominal)
+        near = _settled(begin, data, nominal, pool)
         for _ in range(MOST):
             grown = [*_grown(data, nominal, reached, pool, progress)[:1], *near]
-            better = sorted((each for each in grown if _likelier(each, reached)), key=lambda each: each.cost)
-            if not better:
+            better = (each for each in grown if _likelier(each, reached))
+            following = min(better, key=lambda each: each.cost, default=None)
+            if following is None:
                 break
-            weighed = _without(_weighed(data, nominal, better[0], pool), _idle, data, nominal, pool)
+            weighed = _without(_weighed(data, nominal, following, pool), _idle, data, nominal, pool)
             reached = weighed.scored
             now = _without(weighed, _unconfirmed, data, nominal, pool)
             confirmed = _likelier_of(confirmed, now)
@@ -176,8 +177,9 @@ def _nearest(known: Iterable[Fit]) -> list[Fit]:
     return list(best.values())
 
 
-def _plausible(found: Iterable[Scored], data: Data, nominal: Model) -> list[Scored]:
-    """Those whose effects have values such as 95 of 100 actuators have: what bends to a remainder often has others."""
+def _settled(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
+    """`fits` settled, those with effects of values that few actuators have left out: what bends often has such."""
+    found = pool.map(lambda fit: settled(data, nominal, fit), fits)
     return [each for each in found if not _strange(each.fit, data, nominal)]
 
 
@@ -283,8 +285,7 @@ def _grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: P
 
     followed = sorted(promises, key=lambda promise: promise.chi2)[:FOLLOWED]
     fits = sorted(pool.map(fitted, followed), key=lambda fit: fit.chi2)[:SETTLED]
-    near = _plausible(pool.map(lambda fit: settled(data, nominal, fit), fits), data, nominal)
-    return sorted(near, key=lambda each: each.cost)
+    return sorted(_settled(fits, data, nominal, pool), key=lambda each: each.cost)
 
 
 def _promise(
