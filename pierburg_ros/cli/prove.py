@@ -52,8 +52,9 @@ def prove(
     """Seeded blind trials of the diagnosis: hide, seal, diagnose, open, score.
 
     Each trial hides an effect, a drift, two effects, something outside the catalogue, or nothing, in a valve
-    simulated by a second formulation of the physics. Writes results.json and proof.md. After an interrupt it
-    reports what is done; called again, it goes on. The workers of a cluster must see the output folder too.
+    simulated by a second formulation of the physics. Writes results.json, proof.md and calibration.png. After an
+    interrupt it reports what is done; called again, it goes on. The workers of a cluster must see the output folder
+    too.
 
     With --real, effects are put into your own recordings, by changing their channels where that is exact. The diagnosis
     has to find them beside all that is really there. It starts from a model of your other recordings. Writes
@@ -82,7 +83,7 @@ def prove(
     document.write(done, output, docs)
     console = terminal()
     console.print(summary(done))
-    console.print(f"Results in {output}: proof.md, results.json", soft_wrap=True)
+    console.print(f"Results in {output}: proof.md, results.json, calibration.png", soft_wrap=True)
     return (output / "results.json").read_text(encoding="utf-8")
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from pierburg_ros.proof import tally
+from pierburg_ros.proof import calibration, tally
+from pierburg_ros.proof.calibration_plot import draw
 from pierburg_ros.proof.intervals import Share
 from pierburg_ros.proof.plan import Plan
 
@@ -156,6 +157,11 @@ def values(run: Run) -> str:
     return table(("parameter", "given", "median error", "90th percentile", "95 % interval holds the truth"), rows)
 
 
+def confidence(run: Run) -> str:
+    """Per class of confidence: what was said, and how often it was right."""
+    return table(calibration.HEAD, calibration.rows(calibration.calibration(tally.names(run.results))))
+
+
 def failures(run: Run) -> str:
     """Every trial that is not right."""
     rows = [
@@ -195,6 +201,7 @@ def markdown(run: Run) -> str:
         "### By what was hidden\n\nMedians; shown: the recording tells the effect from drift.\n\n" + by_kind(run),
         "### Confusion\n\n" + confusion(run),
         "### Values of rightly named effects\n\n" + values(run),
+        "### How far a confidence holds\n\nOf the effects that were named, those that are there.\n\n" + confidence(run),
         "### What fails\n\n" + failures(run),
     ]
     return "\n\n".join(sections) + "\n"
@@ -215,10 +222,11 @@ def as_mapping(run: Run) -> dict[str, Any]:
 
 
 def write(run: Run, output: Path, document: Path | None = None) -> None:
-    """Write results.json and proof.md into `output`, and the generated part into `document` where given."""
+    """Write results.json, proof.md and calibration.png into `output`, the generated part into `document` if given."""
     (output / "results.json").write_text(json.dumps(as_mapping(run), indent=1, allow_nan=False) + "\n")
     text = markdown(run)
     (output / "proof.md").write_text(f"# Blind trials\n\n{text}")
+    draw(calibration.calibration(tally.names(run.results)), output / "calibration.png")
     if document is not None:
         name = OVER_GRAPH if run.plan.over_graph else DIRTY if run.plan.dirty else PLAIN
         document.write_text(inserted(document.read_text() if document.exists() else "", name, text))

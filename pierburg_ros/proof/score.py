@@ -79,6 +79,7 @@ class Score:
     failure: str | None = None
     said: bool = False  # the diagnosis says that the recording is dirty
     harmed: bool = False  # an effect, a drift or a change is named that is not there
+    confidences: Mapping[str, float] = field(default_factory=dict)  # of each effect named
 
     @property
     def values_right(self) -> bool:
@@ -239,4 +240,5 @@ def score(
         errors_volts={**errors, "unseen": unseen_rmse},
         said=said(diagnosis),
         harmed=harmed(truth, diagnosis),
+        confidences={effect["id"]: effect["confidence"] for effect in diagnosis["effects"]},
     )

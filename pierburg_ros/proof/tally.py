@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pierburg_ros.proof.calibration import Named, named
 from pierburg_ros.proof.concealment import WITH_REMAINDER, WITHOUT_EFFECT
 from pierburg_ros.proof.formulation.values import CATALOGUE
 from pierburg_ros.proof.intervals import Share
@@ -35,6 +36,11 @@ def shown(results: Iterable[Result]) -> list[Result]:
 def false_name(result: Result) -> bool | None:
     """Whether an effect is named that is not there; None where none is named."""
     return bool(set(result["named"]) - set(result["concealed"])) if result["named"] else None
+
+
+def names(results: Iterable[Result]) -> list[Named]:
+    """Every effect that the results name, with its confidence."""
+    return [name for result in results for name in named(result["confidences"], result["concealed"])]
 
 
 def windows_right(result: Result) -> bool | None:

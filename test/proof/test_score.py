@@ -22,6 +22,7 @@ ANSWER = {
     "effects": [
         {
             "id": "sensor_lag",
+            "confidence": 0.97,
             "parameters": {"time_constant": {"value": 0.0105, "ci95": [0.0095, 0.0115]}},
             "indistinguishable_from": [],
         }
@@ -38,7 +39,7 @@ def changed(mapping, **changes):
 
 
 def other_effect(name, ties=()):
-    return [{"id": name, "parameters": {}, "indistinguishable_from": [list(tie) for tie in ties]}]
+    return [{"id": name, "confidence": 0.9, "parameters": {}, "indistinguishable_from": [list(tie) for tie in ties]}]
 
 
 def test_a_full_answer_is_complete():
@@ -48,6 +49,7 @@ def test_a_full_answer_is_complete():
     assert result.values[0].error == pytest.approx(0.05)
     assert result.values[0].covered
     assert result.errors_volts["training_nominal_rmse"] == 0.2
+    assert result.confidences == {"sensor_lag": 0.97}
 
 
 @pytest.mark.parametrize(("windows", "unseen"), [(0.7, 0.0021), (0.9, 0.0023), (0.9, None)])
@@ -147,7 +149,7 @@ def test_beside_a_remainder_the_names_decide(named, shown, right):
         effects=[{"id": "sensor_lag", "parameters": {"time_constant": {"value": 0.01, "unit": "s"}}}],
         visibility=visibility,
     )
-    answer = changed(ANSWER, verdict="unexplained", effects=[{"id": name, "parameters": {}} for name in named])
+    answer = changed(ANSWER, verdict="unexplained", effects=[each for name in named for each in other_effect(name)])
     assert score(truth, answer, None, None).right is right
 
 
