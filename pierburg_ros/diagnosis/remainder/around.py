@@ -10,7 +10,7 @@ import numpy as np
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.search.candidates import drifting, possible
 from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.diagnosis.search.supported import Supported, Weight
+from pierburg_ros.diagnosis.search.weighing import Supported, Weight
 from pierburg_ros.effects import Effect
 from pierburg_ros.estimation.data import Data, all_training
 from pierburg_ros.estimation.estimator import Estimator, Fit

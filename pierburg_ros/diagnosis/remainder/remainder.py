@@ -12,8 +12,8 @@ from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, fit_shape
 from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.supported import Weight
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import Estimate, estimates

@@ -13,8 +13,9 @@ from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
-from pierburg_ros.diagnosis.search.supported import Supported, Weight, likelier, supported, told_apart, with_play
+from pierburg_ros.diagnosis.search.supported import likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.diagnosis.search.weighing import Supported, Weight
 from pierburg_ros.diagnosis.search.witness import Witness, witnessed
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.report.tried import NOMINAL, identifier
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
-from pierburg_ros.diagnosis.search.supported import Weight
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
@@ -84,15 +84,16 @@ def by_weight(weight: Weight) -> str:
             "The controller that made the input vouches for it: the input follows from setpoint and angle by one rule, "
             f"and {100.0 * weight.by_rule:.1f} % of what that rule leaves, squared, goes with it."
         )
+    what = "any effect" if weight.bare else "it"
     seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
     share = ""
     if weight.explains is not None:
         times = math.sqrt(weight.explains / max(1.0 - weight.explains, 1e-6))
         share = f" It moves the signal by {times:.2g} times what remains."
     return (
-        f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without it, counted against what "
-        f"remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is left."
-        f"{seen}{share}"
+        f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without {what}, counted against "
+        f"what remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is "
+        f"left.{seen}{share}"
     )
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.prior import implausible
 from pierburg_ros.plant import Model
 
 
@@ -53,3 +56,15 @@ def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
     estimator = estimator_beside(data, nominal, first.discrepancy)
     again = scored(data, estimator.fit(fit.explanation, fit.values, BRIEF))
     return min(first, again, key=lambda each: each.cost)
+
+
+def plausible(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
+    """`fits` settled, those with effects of values that few actuators have left out: what bends often has such."""
+    found = pool.map(lambda fit: settled(data, nominal, fit), fits)
+    return [each for each in found if not strange(each.fit, data, nominal)]
+
+
+def strange(fit: Fit, data: Data, nominal: Model) -> set[str]:
+    """Names of the effects' values that few actuators have."""
+    coordinates = Estimator(data, nominal).coordinates(fit.explanation)
+    return {name for name in implausible(coordinates, coordinates.point(fit.values)) if "." in name}

@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.selection import adequate
-from pierburg_ros.diagnosis.search.supported import Weight
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
 from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.estimation.estimator import Fit

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.remainder.remainder import _below, unexamined
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.supported import Weight
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 

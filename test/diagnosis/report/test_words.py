@@ -8,7 +8,7 @@ from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
-from pierburg_ros.diagnosis.search.supported import Weight
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.estimation.explanation import Explanation, Variant
 

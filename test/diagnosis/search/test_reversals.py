@@ -9,7 +9,8 @@ from support.recordings import NOISE, NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.search.reversals import directions, play_at_reversals
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.selection import PROMISING
-from pierburg_ros.diagnosis.search.supported import Supported, with_play
+from pierburg_ros.diagnosis.search.supported import with_play
+from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator

@@ -17,7 +17,8 @@ from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
 from pierburg_ros.diagnosis.search.selection import TIED
-from pierburg_ros.diagnosis.search.supported import Beside, Supported
+from pierburg_ros.diagnosis.search.supported import Beside
+from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy
 from pierburg_ros.estimation.estimator import Fit

@@ -9,18 +9,11 @@ from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search import supported as module
+from pierburg_ros.diagnosis.search import weighing
+from pierburg_ros.diagnosis.search.growing import FOLLOWED
 from pierburg_ros.diagnosis.search.scored import scored, settled
-from pierburg_ros.diagnosis.search.supported import (
-    CONFIRMED,
-    FOLLOWED,
-    Beside,
-    Supported,
-    Weight,
-    confirmed_beside,
-    likelier,
-    supported,
-    told_apart,
-)
+from pierburg_ros.diagnosis.search.supported import Beside, confirmed_beside, likelier, supported, told_apart
+from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weight
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -112,7 +105,7 @@ def test_what_a_search_knows_is_taken_where_no_quantity_leads_to_it(monkeypatch:
     late = estimator.fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
     other = estimator.fit(Explanation(("supply_voltage",)))
     changed = replace(late, explanation=Explanation(changed="supply_voltage"), values=other.values)
-    monkeypatch.setattr(module, "_grown", lambda *_: [])
+    monkeypatch.setattr(module, "grown", lambda *_: [])
     with workers(1) as pool:
         beside = supported(data, NOMINAL, [other, late, changed], pool, lambda _: None)
     assert beside.reached.fit.explanation == late.explanation
@@ -146,6 +139,12 @@ def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
     assert Weight(100.0, -5.0).carried == 1.0
 
 
+def test_of_several_effects_each_carries_its_share_of_what_there_is_without_any():
+    """Half of what the others leave, but little beside what these explain."""
+    assert Weight(100.0, 100.0, bare=1000.0).carried == pytest.approx(0.1)
+    assert Weight(100.0, 100.0, bare=150.0).carried == pytest.approx(0.5)
+
+
 def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
     there, bent = (Weight(300.0, 100.0, unseen, 50.0) for unseen in (45.0, 5.0))
     assert there.confirmed and not bent.confirmed
@@ -167,7 +166,7 @@ def test_a_name_carries_its_part_of_the_evidence(monkeypatch: pytest.MonkeyPatch
     fit = Estimator(late, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02})
     found = likelier(beginning(late), fit, late, NOMINAL, Inline())
     assert set(found.confirmed.weights) == {DELAY}
-    monkeypatch.setattr(module, "CARRIES", 1.01)
+    monkeypatch.setattr(weighing, "CARRIES", 1.01)
     assert not likelier(beginning(late), fit, late, NOMINAL, Inline()).confirmed.weights
 
 

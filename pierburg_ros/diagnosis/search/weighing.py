@@ -1,0 +1,162 @@
+"""What speaks for each quantity of an explanation, beside what remains, and which of them may stay."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from pierburg_ros.diagnosis.search.moved import moved
+from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, settled, strange
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.data import Data
+from pierburg_ros.estimation.explanation import Quantity, Variant, quantities, without
+from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.plant import Model
+
+CONFIRMED = 0.5
+"""Share of the gain of a quantity, from the samples that train to as many that validate, that these must show as well.
+Derived: halfway between what fits the training samples alone, none of it, and what is there, all of it."""
+EXPLAINS = 0.5
+"""Share of the mean square, of what a quantity moves and of what remains, that it must move (`moved.py`). Derived: what
+it moves is then no less than what remains, which is also what makes an effect shown in a trial."""
+CARRIES = 0.25
+"""Share of the evidence against the model without any effect that one carries at least. Measured: of n = 16 trials with
+an effect beside a remainder right names carried 0.34 or more, and wrong ones, beside the right one or where the search
+had missed it, 0.11 or less."""
+ALONE = 0.8
+"""Confidence of a name beside a remainder that nothing else comes near. Measured: Laplace's rule of succession, since
+of effects put into real recordings all of n = 3 such names were right. With one to three rivals three of six were:
+about the share of one among equals."""
+
+
+@dataclass(frozen=True)
+class Weight:
+    """What speaks for a quantity, in -2 log likelihood: what leaving it out costs, `gain`, and what is `left` with it.
+
+    Left is how much less likely the residual is than white noise of the sensor's size. `unseen` is what leaving it out
+    costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
+    are `expected` to show: its gain by their number over that of those that train. `explains` is the share of the mean
+    square that it moves, beside what remains, None where that was not asked; `plausible`: its values are such as 95 of
+    100 actuators have. `instead` are effects or drifting parameters that gain almost as much in its place. `by_rule` is
+    the share of what a controller's rule leaves that goes with it, None where no controller vouches for it
+    (`witness.py`). `bare` is what is left where none of several effects acts, 0 where it is the only one.
+    """
+
+    gain: float
+    left: float
+    unseen: float | None = None
+    expected: float = 0.0
+    explains: float | None = None
+    plausible: bool = True
+    instead: tuple[str, ...] = ()
+    by_rule: float | None = None
+    bare: float = 0.0
+
+    @property
+    def carried(self) -> float:
+        """Share of the evidence against the model without any effect, or without this quantity: 0 to 1."""
+        gain, left = max(self.gain, 0.0), max(self.left, 0.0)
+        return gain / max(gain + left, self.bare, 1e-9)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether samples that no fit has seen say the same."""
+        return self.unseen is None or self.unseen >= CONFIRMED * self.expected
+
+    @property
+    def believed(self) -> bool:
+        """Whether it explains enough with values that an actuator has, and unseen samples confirm it."""
+        return (self.explains is None or self.explains >= EXPLAINS) and self.plausible and self.confirmed
+
+    @property
+    def confidence(self) -> float:
+        """How far it is believed: of equals each is as likely as another; what was asked otherwise by its share."""
+        if self.by_rule is not None:
+            return self.by_rule / (1 + len(self.instead))
+        return self.carried if self.unseen is None else ALONE / (1 + len(self.instead))
+
+
+@dataclass(frozen=True)
+class Supported:
+    """An explanation with its likelihood, and the weight of each of its quantities.
+
+    `nominal` is the model that it changes: the nominal one, on a shaft that goes round with the lesser orders of the
+    torque over a turn.
+    """
+
+    nominal: Model
+    scored: Scored
+    weights: Mapping[Quantity, Weight]
+
+
+def needed(data: Data, nominal: Model, reached: Scored, pool: Executor) -> Supported:
+    """What was reached without what it does not need, weighed."""
+    return thinned(weighed(data, nominal, reached, pool), idle, data, nominal, pool)
+
+
+def idle(quantity: Quantity, weight: Weight) -> bool:
+    """Whether a quantity gains too little: a later one has made it needless."""
+    return weight.gain < SIGNIFICANT
+
+
+def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
+    """Whether a quantity gains or explains too little, or gains nothing on unseen samples, as what acts only once.
+
+    A parameter may drift a little beside an effect; an effect has to carry its part.
+    """
+    if idle(quantity, weight) or not weight.believed:
+        return True
+    return isinstance(quantity, Variant) and (EFFECT[quantity.effect].dated or weight.carried < CARRIES)
+
+
+def thinned(
+    told: Supported, out: Callable[[Quantity, Weight], bool], data: Data, nominal: Model, pool: Executor
+) -> Supported:
+    """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
+    while leaving := {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}:
+        weakest = min(leaving, key=lambda quantity: leaving[quantity])
+        best = told.scored
+        estimator = estimator_beside(data, nominal, best.discrepancy)
+        rest = estimator.fit(without(best.fit.explanation, weakest), best.fit.values, BRIEF)
+        told = weighed(data, nominal, settled(data, nominal, rest), pool)
+    return told
+
+
+def weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Supported:
+    """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
+    explanation, odd = best.fit.explanation, strange(best.fit, data, nominal)
+    several = len(explanation.variants) > 1
+    bare = lacking(data, nominal, best, *explanation.variants).left if several else 0.0
+    shares = moved(data, nominal, best.fit)
+    expected = float(data.validation.sum() / data.train.sum())
+
+    def weight(quantity: Quantity) -> Weight:
+        rest = lacking(data, nominal, best, quantity)
+        own = set() if isinstance(quantity, str) else {f"{quantity.effect}.{name}" for name in quantity.free}
+        gain = rest.cost - best.cost
+        return Weight(
+            gain,
+            best.left,
+            unseen=rest.unseen - best.unseen,
+            expected=expected * gain,
+            explains=shares[quantity],
+            plausible=not own & odd,
+            bare=bare,
+        )
+
+    changes = quantities(explanation)
+    return Supported(nominal, best, dict(zip(changes, pool.map(weight, changes), strict=True)))
+
+
+def lacking(data: Data, nominal: Model, best: Scored, *out: Quantity) -> Scored:
+    """The best without some quantities, the others fitted again with their discrepancy; itself if that cannot be."""
+    estimator = estimator_beside(data, nominal, best.discrepancy)
+    rest = functools.reduce(without, out, best.fit.explanation)
+    try:
+        return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF))
+    except InputError:
+        return best
