@@ -27,6 +27,7 @@ from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.supported import confirmed_beside
 from pierburg_ros.diagnosis.search.tried import Progress, staged
+from pierburg_ros.diagnosis.search.weighing import Weighing
 from pierburg_ros.diagnosis.simulation import reproduction
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
@@ -157,7 +158,7 @@ def effects_stand(beside: Found, found: Found, jobs: int | None, deadline: Deadl
         return True
     begun = found.estimator.fit(fit.explanation, fit.values, BRIEF)
     with workers(jobs, deadline) as pool:
-        return confirmed_beside(begun, found.data, found.nominal, pool)
+        return confirmed_beside(begun, Weighing(found.data, found.nominal, pool))
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

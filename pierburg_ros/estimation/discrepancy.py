@@ -34,6 +34,8 @@ FORGOTTEN = 50.0
 """Time of a discrepancy's clock after which nothing is left of it. Derived: exp(-sqrt(3) 50) is 2e-38."""
 TINY = 1e-12
 """Variance [noise^2] of a discrepancy that is none. Derived: it changes innovations by as little as rounding does."""
+HUGE = 1e200
+"""Product of variances at which its logarithm is taken. Derived: floats reach 1e308, and no variance 1e100."""
 NEAREST = 1e-3
 """Shortest reach that is searched, as a share of the way of a recording. Chosen: a thousandth of it, 0.05 rad where the
 valve goes through its travel thirty times; not varied."""
@@ -75,6 +77,11 @@ class Kalman:
         own = discrepancy.size, discrepancy.memory, discrepancy.reach
         return Filter(self.seen, *_gains(self.steps, self.way, self.seen, *own))
 
+    def evidence(self, discrepancy: Discrepancy, residual: Signal) -> float:
+        """The `evidence` of a residual [noise], shape (samples,), under one discrepancy."""
+        own = discrepancy.size, discrepancy.memory, discrepancy.reach
+        return float(_evidence(residual, self.steps, self.way, self.seen, *own))
+
     def most_likely(self, residual: Signal, beside: Signal | None = None) -> Discrepancy:
         """The discrepancy under which a residual [noise], shape (samples,), is most likely.
 
@@ -82,9 +89,11 @@ class Kalman:
         """
 
         def cost(point: Signal) -> float:
-            filtered = self.filtered(Discrepancy(*np.exp(point)))
-            rest = residual if beside is None else residual - share(filtered, residual, beside) * beside
-            return evidence(filtered, rest)
+            own = Discrepancy(*(float(value) for value in np.exp(point)))
+            if beside is None:
+                return self.evidence(own, residual)
+            filtered = self.filtered(own)
+            return evidence(filtered, residual - share(filtered, residual, beside) * beside)
 
         scale = max(float(np.std(residual[self.seen])), 0.1)
         whole = float(np.max(np.bincount(self.run, weights=self.way), initial=0.0)) + 1.0
@@ -158,23 +167,77 @@ def _gains(
 ) -> tuple[Signal, Signal, Signal]:
     keep, gain, spread = np.empty((steps.size, 4)), np.empty((steps.size, 2)), np.empty(steps.size)
     level, rate = size * size, 3.0 * size * size
-    p, q, r = level, 0.0, rate
+    known = level, 0.0, rate
     for k in range(steps.size):
-        keep[k] = _kept(min(steps[k] / memory + way[k] / reach, FORGOTTEN))
-        a, b, c, d = keep[k]
-        # what is known beyond the stationary covariance fades
-        u, v, w = p - level, q, r - rate
-        p = max(level + a * a * u + 2.0 * a * b * v + b * b * w, 0.0)
-        q = a * c * u + (a * d + b * c) * v + b * d * w
-        r = rate + c * c * u + 2.0 * c * d * v + d * d * w
+        kept = _kept(_elapsed(steps[k], way[k], memory, reach))
+        p, q, r = _predicted(known, kept, level, rate)
+        keep[k] = kept
         spread[k] = math.sqrt(p + 1.0)
         gain[k] = p / (p + 1.0), q / (p + 1.0)
-        if seen[k]:
-            p, q, r = p / (p + 1.0), q / (p + 1.0), r - q * q / (p + 1.0)
-        # rounding may not make it less than a correlation of 1 allows
-        if p > TINY:
-            r = max(r, q * q / p)
+        known = _told((p, q, r), seen[k])
     return keep, gain, spread
+
+
+@kernel
+def _evidence(
+    residual: Signal, steps: Signal, way: Signal, seen: Flags, size: float, memory: float, reach: float
+) -> float:
+    """The evidence of `_gains` and `_innovations`, in one pass that keeps nothing."""
+    level, rate = size * size, 3.0 * size * size
+    known = level, 0.0, rate
+    value = slope = squares = logarithms = 0.0
+    spreads, before = 1.0, -1.0
+    kept = _kept(0.0)
+    for k in range(steps.size):
+        elapsed = _elapsed(steps[k], way[k], memory, reach)
+        if elapsed != before:
+            kept, before = _kept(elapsed), elapsed
+        a, b, c, d = kept
+        p, q, r = _predicted(known, kept, level, rate)
+        value, slope = a * value + b * slope, c * value + d * slope
+        if seen[k]:
+            innovation = residual[k] - value
+            share = 1.0 / (p + 1.0)
+            squares += innovation * innovation * share
+            spreads *= p + 1.0
+            if spreads > HUGE:
+                logarithms, spreads = logarithms + math.log(spreads), 1.0
+            value += p * share * innovation
+            slope += q * share * innovation
+        known = _told((p, q, r), seen[k])
+    return squares + logarithms + math.log(spreads)
+
+
+@kernel
+def _elapsed(step: float, way: float, memory: float, reach: float) -> float:
+    """Time of the clock between two samples."""
+    return min(step / memory + way / reach, FORGOTTEN)
+
+
+@kernel
+def _predicted(
+    known: tuple[float, float, float], kept: tuple[float, float, float, float], level: float, rate: float
+) -> tuple[float, float, float]:
+    """Covariance of value and slope at the next sample: what is known beyond the stationary one fades."""
+    a, b, c, d = kept
+    u, v, w = known[0] - level, known[1], known[2] - rate
+    p = max(level + a * a * u + 2.0 * a * b * v + b * b * w, 0.0)
+    q = a * c * u + (a * d + b * c) * v + b * d * w
+    r = rate + c * c * u + 2.0 * c * d * v + d * d * w
+    return p, q, r
+
+
+@kernel
+def _told(predicted: tuple[float, float, float], seen: bool) -> tuple[float, float, float]:
+    """The covariance once a sample is known, if it is seen."""
+    p, q, r = predicted
+    if seen:
+        share = 1.0 / (p + 1.0)
+        p, q, r = p * share, q * share, r - q * q * share
+    # rounding may not make it less than a correlation of 1 allows
+    if p > TINY and r * p < q * q:
+        r = q * q / p
+    return p, q, r
 
 
 @kernel

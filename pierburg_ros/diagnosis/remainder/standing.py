@@ -15,7 +15,7 @@ from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.supported import likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.diagnosis.search.weighing import Supported, Weight
+from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight
 from pierburg_ros.diagnosis.search.witness import Witness, witnessed
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -88,8 +88,9 @@ def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadlin
         added = found.beside or supported(data, nominal, found.fits.values(), pool, progress)
     deadline.stopped |= added.stopped
     with workers(jobs, deadline) as pool:
-        beside = likelier(added, nearest, data, nominal, pool)
-        named = told_apart(beside.confirmed, data, nominal, pool, progress)
+        weighing = Weighing(data, nominal, pool)
+        beside = likelier(added, nearest, weighing)
+        named = told_apart(beside.confirmed, weighing, progress)
     if _doubtful(named, found):
         named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
     both = with_play(named, beside.reached.fit, data, nominal)

@@ -36,7 +36,7 @@ class _Promise:
 
 
 def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
-    """The likeliest explanations with one quantity more, the best first."""
+    """The likeliest explanations with one quantity more than `base`, the best first."""
     estimator = estimator_beside(data, nominal, base.discrepancy)
     fit, drifts = estimator.restated(base.fit), drifting(nominal)
     known = starts_of(data, fit.model)

@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman, evidence
+from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.prior import implausible
@@ -16,16 +16,11 @@ from pierburg_ros.plant import Model
 
 @dataclass(frozen=True)
 class Scored:
-    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two.
-
-    `unseen` is the same of the samples that validate, when those that train are known, with the discrepancy that is
-    most likely on both: what remains there may be larger.
-    """
+    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two."""
 
     fit: Fit
     discrepancy: Discrepancy
     cost: float
-    unseen: float = 0.0
 
     @property
     def left(self) -> float:
@@ -38,11 +33,17 @@ def scored(data: Data, fit: Fit) -> Scored:
     kalman = Kalman(data, data.train)
     residual = data.residual(fit.model, fit.switch)
     discrepancy = kalman.most_likely(residual)
-    cost = evidence(kalman.filtered(discrepancy), residual)
-    both = Kalman(data, data.train | data.validation)
-    larger = both.most_likely(residual)
-    unseen = evidence(both.filtered(larger), residual) - evidence(kalman.filtered(larger), residual)
-    return Scored(fit, discrepancy, cost, unseen)
+    return Scored(fit, discrepancy, kalman.evidence(discrepancy, residual))
+
+
+def unseen(data: Data, fit: Fit) -> float:
+    """Minus twice the log likelihood of the samples that validate, when those that train are known.
+
+    With the discrepancy that is most likely on both: what remains where nothing was fitted may be larger.
+    """
+    residual, both = data.residual(fit.model, fit.switch), Kalman(data, data.train | data.validation)
+    discrepancy = both.most_likely(residual)
+    return both.evidence(discrepancy, residual) - Kalman(data, data.train).evidence(discrepancy, residual)
 
 
 def estimator_beside(data: Data, nominal: Model, discrepancy: Discrepancy) -> Estimator:

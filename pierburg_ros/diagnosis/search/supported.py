@@ -10,19 +10,10 @@ from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.growing import grown
 from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
-from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, settled, strange
+from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange
 from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.diagnosis.search.weighing import (
-    Supported,
-    Weight,
-    idle,
-    lacking,
-    needed,
-    thinned,
-    unconfirmed,
-    weighed,
-)
+from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle, unconfirmed
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, quantities
@@ -62,38 +53,39 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     whose gain there are taken away again, the weakest first. The later ones may bend and take from those before: what
     is confirmed is heard after each, and the likeliest of that is told.
     """
+    weighing = Weighing(data, nominal, pool)
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
     begun, confirmed = reached.left, Supported(nominal, reached, {})
     stopped = False
     try:
-        for told in _approached(data, nominal, reached, known, pool, progress):
+        for told in _approached(weighing, reached, known, progress):
             reached = told.scored
-            confirmed = _likelier_of(confirmed, thinned(told, unconfirmed, data, nominal, pool))
+            confirmed = _likelier_of(confirmed, weighing.thinned(told, unconfirmed))
     except OutOfTime:
         stopped = True
     return Beside(reached, begun, confirmed, stopped)
 
 
-def _approached(
-    data: Data, nominal: Model, begin: Scored, known: Iterable[Fit], pool: Executor, progress: Progress
-) -> Iterator[Supported]:
-    """Ever likelier explanations, quantities added one by one to where they `begin`, then to what is `known`.
+def _approached(weighing: Weighing, begin: Scored, known: Iterable[Fit], progress: Progress) -> Iterator[Supported]:
+    """Ever likelier explanations: quantities added one by one to where they `begin`, then what is `known`.
 
     Beside a discrepancy as large as all that is missing, a descent sees little of an effect: what is known to come
     nearest without one goes on where it is likelier than all that was added. It does not begin there: what is nearest
     of its size may be what bends most, and few quantities lead from there to what is there.
     """
-    reached = begin
-    for told in _added(data, nominal, begin, pool, progress):
+    data, nominal, reached = weighing.data, weighing.nominal, begin
+    for told in _added(weighing, begin, progress):
         reached = told.scored
         yield told
     nearest = _nearest(fit for fit in known if not strange(fit, data, nominal))
-    near = [each for each in plausible(nearest, data, nominal, pool) if _likelier(each, reached)]
+    near = [each for each in plausible(nearest, data, nominal, weighing.pool) if _likelier(each, reached)]
     if near:
-        yield needed(data, nominal, min(near, key=_price), pool)
+        told = weighing.needed(min(near, key=_price))
+        yield told
+        yield from _added(weighing, told.scored, progress)
 
 
-def _added(data: Data, nominal: Model, begin: Scored, pool: Executor, progress: Progress) -> Iterator[Supported]:
+def _added(weighing: Weighing, begin: Scored, progress: Progress) -> Iterator[Supported]:
     """Explanations with one quantity more each, until one more helps no further.
 
     Each is the one that makes the recordings likeliest with its own most likely discrepancy and values that actuators
@@ -101,10 +93,10 @@ def _added(data: Data, nominal: Model, begin: Scored, pool: Executor, progress: 
     """
     reached = begin
     for _ in range(MOST):
-        larger = grown(data, nominal, reached, pool, progress)[:1]
+        larger = grown(weighing.data, weighing.nominal, reached, weighing.pool, progress)[:1]
         if not larger or not _likelier(larger[0], reached):
             return
-        told = needed(data, nominal, larger[0], pool)
+        told = weighing.needed(larger[0])
         reached = told.scored
         yield told
 
@@ -134,36 +126,36 @@ def _likelier(one: Scored, other: Scored) -> bool:
     return _price(one) <= _price(other)
 
 
-def likelier(beside: Beside, fit: Fit, data: Data, nominal: Model, pool: Executor) -> Beside:
+def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
     """`beside`, or with a `fit` of plausible values that makes the recordings likelier by as much as names a quantity.
 
     Quantities that are added one by one may miss what a search has found together.
     """
-    reached = settled(data, nominal, fit)
-    if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, data, nominal):
+    reached = weighing.settled(fit)
+    if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, weighing.data, weighing.nominal):
         return beside
-    now = thinned(weighed(data, nominal, reached, pool), unconfirmed, data, nominal, pool)
+    now = weighing.thinned(weighing.weighed(reached), unconfirmed)
     return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
 
 
-def confirmed_beside(fit: Fit, data: Data, nominal: Model, pool: Executor) -> bool:
+def confirmed_beside(fit: Fit, weighing: Weighing) -> bool:
     """Whether unseen samples confirm all effects of a `fit` beside what remains, however little of it they explain."""
-    weights = weighed(data, nominal, settled(data, nominal, fit), pool).weights
+    weights = weighing.weighed(weighing.settled(fit)).weights
     effects = {quantity: weight for quantity, weight in weights.items() if isinstance(quantity, Variant)}
     return all(weight.confirmed and not idle(quantity, weight) for quantity, weight in effects.items())
 
 
-def told_apart(named: Supported, data: Data, nominal: Model, pool: Executor, progress: Progress) -> Supported:
+def told_apart(named: Supported, weighing: Weighing, progress: Progress) -> Supported:
     """What of `named` may be named, each effect with what could stand in its place.
 
     An effect that a drift could stand for is not: of equals that with fewer effects is taken.
     """
-    told, drifts = _with_rivals(named, data, nominal, pool, progress), set(drifting(nominal))
+    told, drifts = _with_rivals(named, weighing, progress), set(drifting(weighing.nominal))
     doubted = {quantity for quantity, weight in told.weights.items() if drifts & set(weight.instead)}
     if not doubted:
         return told
-    rest = thinned(told, lambda quantity, _: quantity in doubted, data, nominal, pool)
-    return told_apart(rest, data, nominal, pool, progress)
+    rest = weighing.thinned(told, lambda quantity, _: quantity in doubted)
+    return told_apart(rest, weighing, progress)
 
 
 def with_play(named: Supported, reached: Fit, data: Data, nominal: Model) -> Supported:
@@ -187,13 +179,13 @@ def _shows(play: Play, fit: Fit, data: Data) -> bool:
     return play.variant.effect in fit.explanation.effects or (again is not None and again.gain >= PROMISING)
 
 
-def _with_rivals(named: Supported, data: Data, nominal: Model, pool: Executor, progress: Progress) -> Supported:
+def _with_rivals(named: Supported, weighing: Weighing, progress: Progress) -> Supported:
     """`named` with what could stand in the place of each effect: what is less likely by less than would name it."""
     weights = dict(named.weights)
     for quantity, weight in weights.items():
         if isinstance(quantity, Variant):
-            rest = lacking(data, nominal, named.scored, quantity)
-            others = grown(data, nominal, rest, pool, progress)
+            rest = weighing.lacking(named.scored, quantity)
+            others = grown(weighing.data, weighing.nominal, rest, weighing.pool, progress)
             near = [each.fit.explanation for each in others if each.cost - named.scored.cost < SIGNIFICANT]
             added = (set(quantities(each)) - set(quantities(rest.fit.explanation)) for each in near)
             ids = dict.fromkeys(one if isinstance(one, str) else one.effect for each in added for one in each)

@@ -8,12 +8,13 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.search.moved import moved
-from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, settled, strange
+from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, settled, strange, unseen
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.explanation import Quantity, Variant, quantities, without
+from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, quantities, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
@@ -93,11 +94,6 @@ class Supported:
     weights: Mapping[Quantity, Weight]
 
 
-def needed(data: Data, nominal: Model, reached: Scored, pool: Executor) -> Supported:
-    """What was reached without what it does not need, weighed."""
-    return thinned(weighed(data, nominal, reached, pool), idle, data, nominal, pool)
-
-
 def idle(quantity: Quantity, weight: Weight) -> bool:
     """Whether a quantity gains too little: a later one has made it needless."""
     return weight.gain < SIGNIFICANT
@@ -113,50 +109,79 @@ def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
     return isinstance(quantity, Variant) and (EFFECT[quantity.effect].dated or weight.carried < CARRIES)
 
 
-def thinned(
-    told: Supported, out: Callable[[Quantity, Weight], bool], data: Data, nominal: Model, pool: Executor
-) -> Supported:
-    """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
-    while leaving := {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}:
-        weakest = min(leaving, key=lambda quantity: leaving[quantity])
-        best = told.scored
-        estimator = estimator_beside(data, nominal, best.discrepancy)
-        rest = estimator.fit(without(best.fit.explanation, weakest), best.fit.values, BRIEF)
-        told = weighed(data, nominal, settled(data, nominal, rest), pool)
-    return told
+class Weighing:
+    """Weighs explanations of some recordings that change a `nominal` model, each fitted with its own discrepancy.
 
+    What was fitted from the values of a larger explanation is not fitted again. What was reached from smaller ones is:
+    it may have stopped in the place of what was added since.
+    """
 
-def weighed(data: Data, nominal: Model, best: Scored, pool: Executor) -> Supported:
-    """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
-    explanation, odd = best.fit.explanation, strange(best.fit, data, nominal)
-    several = len(explanation.variants) > 1
-    bare = lacking(data, nominal, best, *explanation.variants).left if several else 0.0
-    shares = moved(data, nominal, best.fit)
-    expected = float(data.validation.sum() / data.train.sum())
+    def __init__(self, data: Data, nominal: Model, pool: Executor) -> None:
+        self.data, self.nominal, self.pool = data, nominal, pool
+        self._known: dict[Explanation, tuple[Scored, float]] = {}
+        self._lowered: set[Explanation] = set()
 
-    def weight(quantity: Quantity) -> Weight:
-        rest = lacking(data, nominal, best, quantity)
-        own = set() if isinstance(quantity, str) else {f"{quantity.effect}.{name}" for name in quantity.free}
-        gain = rest.cost - best.cost
-        return Weight(
-            gain,
-            best.left,
-            unseen=rest.unseen - best.unseen,
-            expected=expected * gain,
-            explains=shares[quantity],
-            plausible=not own & odd,
-            bare=bare,
-        )
+    def settled(self, fit: Fit) -> Scored:
+        """A fit with its own discrepancy, or the likeliest so far of the same explanation."""
+        return self._kept(settled(self.data, self.nominal, fit))[0]
 
-    changes = quantities(explanation)
-    return Supported(nominal, best, dict(zip(changes, pool.map(weight, changes), strict=True)))
+    def needed(self, reached: Scored) -> Supported:
+        """What was reached without what it does not need, weighed."""
+        return self.thinned(self.weighed(reached), idle)
 
+    def thinned(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
+        """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
+        while leaving := {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}:
+            weakest = min(leaving, key=lambda quantity: leaving[quantity])
+            told = self.weighed(self.lacking(told.scored, weakest))
+        return told
 
-def lacking(data: Data, nominal: Model, best: Scored, *out: Quantity) -> Scored:
-    """The best without some quantities, the others fitted again with their discrepancy; itself if that cannot be."""
-    estimator = estimator_beside(data, nominal, best.discrepancy)
-    rest = functools.reduce(without, out, best.fit.explanation)
-    try:
-        return settled(data, nominal, estimator.fit(rest, best.fit.values, BRIEF))
-    except InputError:
-        return best
+    def weighed(self, reached: Scored) -> Supported:
+        """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
+        best, validation = self._kept(reached)
+        explanation, odd = best.fit.explanation, strange(best.fit, self.data, self.nominal)
+        several = len(explanation.variants) > 1
+        bare = self.lacking(best, *explanation.variants).left if several else 0.0
+        shares = moved(self.data, self.nominal, best.fit)
+        expected = float(self.data.validation.sum() / self.data.train.sum())
+
+        def weight(quantity: Quantity) -> Weight:
+            rest, lost = self._lacking(best, quantity)
+            own = set() if isinstance(quantity, str) else {f"{quantity.effect}.{name}" for name in quantity.free}
+            gain = rest.cost - best.cost
+            return Weight(
+                gain,
+                best.left,
+                unseen=lost - validation,
+                expected=expected * gain,
+                explains=shares[quantity],
+                plausible=not own & odd,
+                bare=bare,
+            )
+
+        changes = quantities(explanation)
+        return Supported(self.nominal, best, dict(zip(changes, self.pool.map(weight, changes), strict=True)))
+
+    def lacking(self, best: Scored, *out: Quantity) -> Scored:
+        """The best without some quantities, the others fitted again; itself if they cannot be left out."""
+        return self._lacking(best, *out)[0]
+
+    def _lacking(self, best: Scored, *out: Quantity) -> tuple[Scored, float]:
+        rest = functools.reduce(without, out, best.fit.explanation)
+        if rest not in self._lowered:
+            estimator = estimator_beside(self.data, self.nominal, best.discrepancy)
+            try:
+                found = settled(self.data, self.nominal, estimator.fit(rest, best.fit.values, BRIEF))
+            except InputError:
+                return self._kept(best)
+            self._kept(found)
+            self._lowered.add(rest)
+        return self._known[rest]
+
+    def _kept(self, reached: Scored) -> tuple[Scored, float]:
+        """The likeliest so far of the same explanation, and what it says of samples that validate."""
+        explanation = reached.fit.explanation
+        known = self._known.get(explanation)
+        if known is None or reached.cost < known[0].cost:
+            self._known[explanation] = reached, unseen(self.data, reached.fit)
+        return self._known[explanation]

@@ -11,9 +11,9 @@ from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search import supported as module
 from pierburg_ros.diagnosis.search import weighing
 from pierburg_ros.diagnosis.search.growing import FOLLOWED
-from pierburg_ros.diagnosis.search.scored import scored, settled
+from pierburg_ros.diagnosis.search.scored import scored, settled, unseen
 from pierburg_ros.diagnosis.search.supported import Beside, confirmed_beside, likelier, supported, told_apart
-from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weight
+from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weighing, Weight
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -54,7 +54,7 @@ def found_in(changes: dict[str, float], seed: int = 0) -> Supported | None:
 
 def named_in(beside: Beside, data: Data) -> Supported | None:
     with workers(1) as pool:
-        named = told_apart(beside.confirmed, data, NOMINAL, pool, lambda _: None)
+        named = told_apart(beside.confirmed, Weighing(data, NOMINAL, pool), lambda _: None)
     return named if named.weights else None
 
 
@@ -93,8 +93,8 @@ def test_what_a_search_has_found_is_heard_where_it_is_likelier():
     late = estimator.fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
     other = estimator.fit(Explanation(("supply_voltage",)))
     with workers(1) as pool:
-        heard = likelier(nothing, late, data, NOMINAL, pool)
-        assert likelier(nothing, other, data, NOMINAL, pool) is nothing
+        heard = likelier(nothing, late, Weighing(data, NOMINAL, pool))
+        assert likelier(nothing, other, Weighing(data, NOMINAL, pool)) is nothing
     assert set(heard.confirmed.weights) == {DELAY} and heard.begun == nothing.begun
 
 
@@ -121,8 +121,8 @@ def test_more_may_remain_on_unseen_samples_than_where_it_was_fitted():
         swell[start:end] = np.sin(np.linspace(0.0, np.pi, end - start)) ** 2
     data = data_on(replace(clean, measured=clean.measured + 60.0 * NOISE * swell))
     estimator = Estimator(data, NOMINAL)
-    late = scored(data, estimator.at(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.005}))
-    assert late.unseen < scored(data, estimator.at(Explanation())).unseen
+    late = estimator.at(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.005})
+    assert unseen(data, late) < unseen(data, estimator.at(Explanation()))
 
 
 @pytest.mark.parametrize(("really", "confirmed"), [({"input_delay.delay": 0.02}, True), ({}, False)])
@@ -130,7 +130,7 @@ def test_an_effect_found_elsewhere_is_confirmed_beside_what_remains(really: dict
     data = data_on(disturbed(really, 0))
     late = Estimator(data, NOMINAL).fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
     with workers(1) as pool:
-        assert confirmed_beside(late, data, NOMINAL, pool) == confirmed
+        assert confirmed_beside(late, Weighing(data, NOMINAL, pool)) == confirmed
 
 
 def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
@@ -164,10 +164,10 @@ def test_a_name_carries_its_part_of_the_evidence(monkeypatch: pytest.MonkeyPatch
     """As load-dependent friction that gains 680 where static friction is missed, and 11,000 is left."""
     late = data_on(disturbed({"input_delay.delay": 0.02}, seed=0))
     fit = Estimator(late, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02})
-    found = likelier(beginning(late), fit, late, NOMINAL, Inline())
+    found = likelier(beginning(late), fit, Weighing(late, NOMINAL, Inline()))
     assert set(found.confirmed.weights) == {DELAY}
     monkeypatch.setattr(weighing, "CARRIES", 1.01)
-    assert not likelier(beginning(late), fit, late, NOMINAL, Inline()).confirmed.weights
+    assert not likelier(beginning(late), fit, Weighing(late, NOMINAL, Inline())).confirmed.weights
 
 
 def test_values_that_no_actuator_has_are_not_heard():
@@ -178,7 +178,7 @@ def test_values_that_no_actuator_has_are_not_heard():
     fit = Estimator(data, NOMINAL).at(Explanation((), (sticks,)), values)
     begin = beginning(data)
     assert settled(data, NOMINAL, fit).cost < begin.reached.cost - 1000.0
-    assert likelier(begin, fit, data, NOMINAL, Inline()) is begin
+    assert likelier(begin, fit, Weighing(data, NOMINAL, Inline())) is begin
 
 
 @pytest.mark.parametrize(("delay", "told"), [(0.0005, True), (0.02, False)])
