@@ -20,7 +20,8 @@ LEAST = 0.01
 def left_of_torque(told: Data, unseen: Data, nominal: Model) -> tuple[float, float] | None:
     """What is left of the torque [N.m, root mean square] on the training samples of `unseen`, fitted to those `told`.
 
-    Without a torque over a turn, and with it. None where no overtones are told: then a search does as well.
+    By `nominal` as it is, and with the torque over a turn that it lacks. None where no overtones are told: then a
+    search does as well.
     """
     found = repeated(told, nominal)
     if found is None or found.orders.size < 2:
@@ -29,7 +30,7 @@ def left_of_torque(told: Data, unseen: Data, nominal: Model) -> tuple[float, flo
     def parts(data: Data) -> list[Part]:
         return [_part(run) for run in data.runs if goes_round(nominal, run.measured, run.quantity)]
 
-    return left_unseen(nominal.with_residual(None), parts(told), parts(unseen))
+    return left_unseen(_repeating(nominal), parts(told), parts(unseen))
 
 
 def with_lesser_orders(data: Data, nominal: Model) -> Model:
@@ -42,7 +43,7 @@ def with_lesser_orders(data: Data, nominal: Model) -> Model:
 
 
 def with_turn(data: Data, base: Model) -> Model | None:
-    """`base` with what its effects leave of the torque over a turn; None where no shaft goes round."""
+    """`base` with what it lacks of the torque over a turn; None where no shaft goes round."""
     found = repeated(data, base)
     return None if found is None else _with(base, found)
 
@@ -63,16 +64,16 @@ def repeated(data: Data, model: Model) -> Balance | None:
     The longest run of each recording has to show an order by itself: what pieces of a swing leave, put together, passes
     for one.
     """
-    bare = model.with_residual(None)
+    own = _repeating(model)
     told = [run for run in data.runs if run.train.any()]
     turning = [run for run in told if goes_round(model, run.measured, run.quantity)]
     for number in {run.number for run in told}:
         longest = max((run for run in told if run.number == number), key=lambda run: run.time.size)
-        if all(longest is not run for run in turning) or not over_a_turn(bare, [_part(longest)]).orders.size:
+        if all(longest is not run for run in turning) or not over_a_turn(own, [_part(longest)]).orders.size:
             return None
     if not turning:
         return None
-    found = over_a_turn(bare, [_part(run) for run in turning])
+    found = over_a_turn(own, [_part(run) for run in turning])
     return found if found.orders.size else None
 
 
@@ -80,8 +81,24 @@ def _part(run: Run) -> Part:
     return run.inputs, run.time, run.measured, run.train
 
 
+def _repeating(model: Model) -> Model:
+    """`model` with a residual torque only if that repeats itself with every turn: another may stand for the same."""
+    residual = model.residual_torque
+    return model if residual is not None and "period" in residual else model.with_residual(None)
+
+
 def _with(model: Model, found: Balance) -> Model:
-    """`model` with a torque over a turn; the first node is the last one again."""
+    """`model` with a torque over a turn beside its own; the first node is the last one again."""
     angle = np.linspace(0.0, TURN, RESIDUAL_ANGLES)
-    torque = found.torque(angle)[:, np.newaxis]
-    return model.with_residual({"angle": angle, "velocity": np.zeros(1), "torque": torque, "period": TURN})
+    torque, own = found.torque(angle), _repeating(model).residual_torque
+    if own is not None:
+        known = np.asarray(own["torque"], dtype=float)
+        torque = torque + np.interp(angle, own["angle"], known[:, 0], period=own["period"])
+    return model.with_residual(
+        {
+            "angle": angle,
+            "velocity": np.zeros(1),
+            "torque": torque[:, np.newaxis],
+            "period": TURN,
+        }
+    )

@@ -45,6 +45,8 @@ def goes_around(data: Data, nominal: Model) -> bool:
 def supported_around(data: Data, nominal: Model) -> Supported | None:
     """The strongest order of a torque over a turn as an effect, beside drifts; None where it does not go around.
 
+    None too where the nominal model has such an effect already: what it lacks becomes part of the torque over a turn.
+
     Chance raises an order so far once in a hundred recordings. Its weight is its share of the mean square of the
     torque, beside what no order makes up. Without overtones a search finds it as any other effect.
     """
@@ -97,6 +99,7 @@ def _around(data: Data, nominal: Model) -> _Around | None:
 
 
 def _over_the_angle(nominal: Model) -> Effect | None:
-    """The effect that is a sine over the angle."""
+    """The effect that is a sine over the angle, None where `nominal` has it already: it has one order alone."""
     sines = (each for each in possible(nominal.actuator) if each.ripple is not None and each.turns_within is not None)
-    return next(sines, None)
+    effect = next(sines, None)
+    return None if effect is None or effect.acts(nominal.values) else effect

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.deadline import Deadline
-from pierburg_ros.diagnosis.remainder.around import supported_around, vouched_around
+from pierburg_ros.diagnosis.remainder.around import goes_around, supported_around, vouched_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
@@ -54,7 +54,8 @@ def standing(
 ) -> Standing:
     """What stands beyond one explanation of all.
 
-    What repeats itself with every turn comes first. Else several recordings vouch for effects that each lower the error
+    What repeats itself with every turn comes first; where the nominal model has such an effect, and lacks overtones, no
+    other is told beside them. Else several recordings vouch for effects that each lower the error
     on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
     what remains. What a controller vouches for in a single `recording` is named as well.
     """
@@ -65,7 +66,8 @@ def standing(
     if data.several and vouched is None:
         fit, left_out = shared_effects(found, progress, jobs, deadline.part(ADDING))
         return Standing(estimator, estimator.restated(fit), left_out)
-    stood = around or _stood(found, progress, jobs, deadline)
+    known = around is None and goes_around(data, found.nominal)
+    stood = around if around or known else _stood(found, progress, jobs, deadline)
     told = recording and witnessed(Signals.of(recording, recording.time.size), found.nominal)
     stood = _vouched_for(stood, found, told) if told else stood
     if stood is None:

@@ -139,10 +139,10 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
 
 
 def confirmed_beside(fit: Fit, weighing: Weighing) -> bool:
-    """Whether unseen samples confirm all effects of a `fit` beside what remains, however little of it they explain."""
+    """Whether unseen samples confirm all effects of a `fit`, with plausible values, however little they explain."""
     weights = weighing.weighed(weighing.settled(fit)).weights
     effects = {quantity: weight for quantity, weight in weights.items() if isinstance(quantity, Variant)}
-    return all(weight.confirmed and not idle(quantity, weight) for quantity, weight in effects.items())
+    return all(weight.confirmed and weight.plausible and not idle(one, weight) for one, weight in effects.items())
 
 
 def told_apart(named: Supported, weighing: Weighing, progress: Progress) -> Supported:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from pierburg_ros.diagnosis.remainder.around import goes_around, supported_aroun
 from pierburg_ros.diagnosis.remainder.confirmed import confirmed
 from pierburg_ros.diagnosis.remainder.shape import fit_shape
 from pierburg_ros.estimation.data import Data, data_of, in_parts
-from pierburg_ros.estimation.turn import left_of_torque
+from pierburg_ros.estimation.turn import left_of_torque, with_turn
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.workers import workers
@@ -37,10 +39,13 @@ def data_on(model: Model, *seeds: int) -> Data:
     return in_parts(data_of([recorded(model, seed) for seed in seeds or (4,)], NOMINAL))
 
 
+def overtone(amplitude: float, order: float) -> dict[str, Any]:
+    torque = amplitude * np.cos(order * ANGLE)[:, None]
+    return {"angle": ANGLE, "velocity": np.zeros(1), "torque": torque, "period": 2.0 * np.pi}
+
+
 def rippled() -> Model:
-    overtone = {"angle": ANGLE, "velocity": np.zeros(1), "period": 2.0 * np.pi}
-    overtone["torque"] = 0.003 * np.cos(28.0 * ANGLE)[:, None]
-    return NOMINAL.with_values({**RIPPLE, "coulomb_friction": 0.012}).with_residual(overtone)
+    return NOMINAL.with_values({**RIPPLE, "coulomb_friction": 0.012}).with_residual(overtone(0.003, 28.0))
 
 
 def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
@@ -57,6 +62,26 @@ def test_a_ripple_with_an_overtone_is_named_beside_a_drift() -> None:
 def test_a_rotor_without_a_ripple_is_given_none() -> None:
     data = data_on(NOMINAL.with_values({"coulomb_friction": 0.012}))
     assert supported_around(data, NOMINAL) is None
+
+
+def test_a_ripple_that_the_nominal_model_has_is_not_named_again() -> None:
+    """Neither with its overtones, where nothing is left, nor without, where the overtones are."""
+    torque = overtone(0.003, 28.0)["torque"] + overtone(0.003, 14.0)["torque"]
+    known = rippled().with_residual({**overtone(0.0, 1.0), "torque": torque})
+    data, bare = data_on(known), known.with_residual(None)
+    assert not goes_around(data, known) and supported_around(data, known) is None
+    assert goes_around(data, bare) and supported_around(data, bare) is None
+
+
+def test_what_a_known_torque_over_a_turn_lacks_is_added_to_it() -> None:
+    """Another order beside the one that is known; that stays."""
+    known = NOMINAL.with_residual(overtone(0.003, 14.0))
+    torque = overtone(0.003, 14.0)["torque"] + overtone(0.004, 9.0)["torque"]
+    data = data_on(NOMINAL.with_residual({**overtone(0.0, 1.0), "torque": torque}))
+    both = with_turn(data, known)
+    assert both is not None and both.residual_torque is not None
+    found = np.interp(ANGLE, both.residual_torque["angle"], np.asarray(both.residual_torque["torque"])[:, 0])
+    assert np.corrcoef(found, torque[:, 0])[0, 1] > 0.98
 
 
 def test_several_recordings_vouch_for_a_ripple_that_they_share() -> None:

@@ -179,6 +179,7 @@ def test_values_that_no_actuator_has_are_not_heard():
     begin = beginning(data)
     assert settled(data, NOMINAL, fit).cost < begin.reached.cost - 1000.0
     assert likelier(begin, fit, Weighing(data, NOMINAL, Inline())) is begin
+    assert not confirmed_beside(fit, Weighing(data, NOMINAL, Inline()))
 
 
 @pytest.mark.parametrize(("delay", "told"), [(0.0005, True), (0.02, False)])
