@@ -21,8 +21,9 @@ def draw(classes: Sequence[Class], path: Path) -> None:
     below = [share - each.right.interval[0] for share, each in zip(right, classes, strict=True)]
     above = [each.right.interval[1] - share for share, each in zip(right, classes, strict=True)]
     axes.errorbar(said, right, yerr=[below, above], fmt="o", capsize=3, label="names, with 95 % interval")
-    for each, share in zip(classes, right, strict=True):
-        axes.annotate(f"n = {each.right.total}", (each.said, share), (-6, -12), textcoords="offset points", ha="right")
+    for each in classes:
+        low = each.said, each.right.interval[0]
+        axes.annotate(f"n = {each.right.total}", low, (-5, 0), textcoords="offset points", ha="right")
     axes.set(xlim=(0, 1.02), ylim=(0, 1.05), xlabel="confidence that was said", ylabel="share that is right")
     axes.legend(loc="lower right", frameon=False)
     FigureCanvasAgg(figure)
