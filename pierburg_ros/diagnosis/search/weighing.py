@@ -130,10 +130,17 @@ class Weighing:
         return self.thinned(self.weighed(reached), idle)
 
     def thinned(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
-        """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
+        """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again.
+
+        What cannot be left out, since the others make no model without it, stays.
+        """
         while leaving := {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}:
-            weakest = min(leaving, key=lambda quantity: leaving[quantity])
-            told = self.weighed(self.lacking(told.scored, weakest))
+            own = told.scored.fit.explanation
+            rests = (self.lacking(told.scored, quantity) for quantity in sorted(leaving, key=lambda one: leaving[one]))
+            rest = next((rest for rest in rests if rest.fit.explanation != own), None)
+            if rest is None:
+                return told
+            told = self.weighed(rest)
         return told
 
     def weighed(self, reached: Scored) -> Supported:

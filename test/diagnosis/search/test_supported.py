@@ -14,6 +14,7 @@ from pierburg_ros.diagnosis.search.growing import FOLLOWED
 from pierburg_ros.diagnosis.search.scored import scored, settled, unseen
 from pierburg_ros.diagnosis.search.supported import Beside, confirmed_beside, likelier, supported, told_apart
 from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weighing, Weight
+from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
@@ -168,6 +169,19 @@ def test_a_name_carries_its_part_of_the_evidence(monkeypatch: pytest.MonkeyPatch
     assert set(found.confirmed.weights) == {DELAY}
     monkeypatch.setattr(weighing, "CARRIES", 1.01)
     assert not likelier(beginning(late), fit, Weighing(late, NOMINAL, Inline())).confirmed.weights
+
+
+def test_what_the_others_make_no_model_without_stays(monkeypatch: pytest.MonkeyPatch):
+    """As friction that breaks loose below the one that slides."""
+    data = data_on(disturbed({"input_delay.delay": 0.02}, seed=0))
+    late = scored(data, Estimator(data, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02}))
+    told, weighing_it = Supported(NOMINAL, late, {DELAY: Weight(0.0, 100.0)}), Weighing(data, NOMINAL, Inline())
+
+    def refuse(*_: object) -> None:
+        raise InputError("no such model")
+
+    monkeypatch.setattr(Estimator, "fit", refuse)
+    assert weighing_it.thinned(told, lambda *_: True) is told
 
 
 def test_values_that_no_actuator_has_are_not_heard():
