@@ -57,7 +57,16 @@ def test_the_likelihood_is_that_of_the_joint_normal_distribution(kalman, data):
     residual[:first] = np.random.default_rng(2).standard_normal(first)
     few = Kalman(data, np.arange(kalman.seen.size) < first)
     expected = residual[:first] @ np.linalg.solve(covariance, residual[:first]) + np.linalg.slogdet(covariance)[1]
-    assert evidence(few.filtered(Discrepancy(size, memory, reach)), residual) == pytest.approx(expected, rel=1e-9)
+    own = Discrepancy(size, memory, reach)
+    assert evidence(few.filtered(own), residual) == pytest.approx(expected, rel=1e-9)
+    assert few.evidence(own, residual) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_evidence_in_one_pass_is_that_of_the_innovations(kalman):
+    """Also beyond the product of variances at which its logarithm is taken."""
+    own = Discrepancy(800.0, 100.0, 3e4)
+    residual = wandering(kalman, own.size, own.memory, own.reach)
+    assert kalman.evidence(own, residual) == pytest.approx(evidence(kalman.filtered(own), residual), rel=1e-9)
 
 
 def test_the_most_likely_one_is_no_less_likely_than_the_true_one(kalman):

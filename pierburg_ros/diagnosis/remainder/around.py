@@ -50,7 +50,8 @@ def supported_around(data: Data, nominal: Model) -> Supported | None:
     Chance raises an order so far once in a hundred recordings. Its weight is its share of the mean square of the
     torque, beside what no order makes up. Without overtones a search finds it as any other effect.
     """
-    around = _around(data, nominal) if goes_around(data, nominal) else None
+    effect = _over_the_angle(nominal)
+    around = _around(data, nominal, effect) if effect and goes_around(data, nominal) else None
     if around is None:
         return None
     amplitude = math.hypot(*around.balance.strongest[:2])
@@ -75,9 +76,9 @@ def vouched_around(data: Data, nominal: Model) -> LeftOut | None:
     return LeftOut(before, after, len(helped), len(names), helped, "N.m") if after <= BETTER * before else None
 
 
-def _around(data: Data, nominal: Model) -> _Around | None:
-    found, effect = repeated(data, nominal), _over_the_angle(nominal)
-    if found is None or effect is None or found.orders.size < 2:
+def _around(data: Data, nominal: Model, effect: Effect) -> _Around | None:
+    found = repeated(data, nominal)
+    if found is None or found.orders.size < 2:
         return None
     ripple = effect.ripple
     assert ripple is not None

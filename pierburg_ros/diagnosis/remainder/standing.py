@@ -55,9 +55,9 @@ def standing(
     """What stands beyond one explanation of all.
 
     What repeats itself with every turn comes first; where the nominal model has such an effect, and lacks overtones, no
-    other is told beside them. Else several recordings vouch for effects that each lower the error
-    on recordings left out, a single one for quantities that unseen samples confirm when the evidence is counted against
-    what remains. What a controller vouches for in a single `recording` is named as well.
+    other is told beside them. Else several recordings vouch for effects that each lower the error on recordings left
+    out, a single one for quantities that unseen samples confirm when the evidence is counted against what remains.
+    What a controller vouches for in a single `recording` is named as well.
     """
     data, estimator = found.data, found.estimator
     deadline = deadline or Deadline()
@@ -66,8 +66,9 @@ def standing(
     if data.several and vouched is None:
         fit, left_out = shared_effects(found, progress, jobs, deadline.part(ADDING))
         return Standing(estimator, estimator.restated(fit), left_out)
-    known = around is None and goes_around(data, found.nominal)
-    stood = around if around or known else _stood(found, progress, jobs, deadline)
+    stood = around
+    if stood is None and not goes_around(data, found.nominal):
+        stood = _stood(found, progress, jobs, deadline)
     told = recording and witnessed(Signals.of(recording, recording.time.size), found.nominal)
     stood = _vouched_for(stood, found, told) if told else stood
     if stood is None:

@@ -19,8 +19,8 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 FOLLOWED = 6
-"""Additions of each round that are fitted, of those that a linear step promises most. Work: each costs two brief
-descents; not varied."""
+"""Additions of each round that are fitted, of those that a linear step promises most. Work: each costs a brief
+descent; not varied."""
 SETTLED = 3
 """How many of them are fitted again, each with its own discrepancy. Work: each costs a brief descent and a search for
 the discrepancy; not varied."""
