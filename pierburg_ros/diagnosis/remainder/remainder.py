@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.confirmed import confirmed
@@ -36,10 +36,14 @@ class Remainder:
 
 
 def unexamined(found: Found, named: Standing | None = None) -> Remainder:
-    """Where there is no time to look at what remains: the model that stands, else that below it, without intervals."""
+    """Where there is no time to look at what remains: the model that stands, else that below it, without intervals.
+
+    What bends for the rest has not drifted as long as no interval says so.
+    """
     named = named or Standing(found.estimator)
-    base = named.base or _below(found, None)
-    return Remainder(found.estimator.restated(base), dict(named.told), named.left_out, named.weights, None)
+    base = found.estimator.restated(named.base or _below(found, None))
+    base = base if named.base else replace(base, explanation=Explanation())
+    return Remainder(base, dict(named.told), named.left_out, named.weights, None)
 
 
 def unnamed(found: Found, jobs: int | None, deadline: Deadline) -> Remainder:

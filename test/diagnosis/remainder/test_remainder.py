@@ -42,7 +42,11 @@ def test_what_has_been_named_stands_where_no_time_is_left_for_the_rest():
     base = made_up(Explanation(variants=(Variant("sensor_lag", ("time_constant",)),)), 2.0, NOMINAL)
     told = unexamined(found, Standing(found.estimator, base, weights={"sensor_lag": weight}))
     assert told.base.explanation == base.explanation and told.weights == {"sensor_lag": weight}
-    assert unexamined(found).base.explanation == Explanation(("spring_stiffness",))
+
+
+def test_what_bends_has_not_drifted_where_no_time_is_left_for_its_interval():
+    told = unexamined(recalibrated_on(STIFFER)).base
+    assert told.explanation == Explanation() and told.model.values["spring_stiffness"] == 0.17
 
 
 def recalibrated_on(changes: dict[str, float]) -> Found:
