@@ -249,6 +249,11 @@ class Effect:
     """Puts it into the channels of a real recording; None: that changes how the shaft moves, which no channel can be
     made to show exactly."""
 
+    @property
+    def late(self) -> bool:
+        """Whether all that it does is to make the command act, or the measurement show, later."""
+        return self.dead_time is not None or self.lag is not None
+
     def parameter(self, name: str) -> Parameter:
         """The declaration of the parameter called `name`, without the id; KeyError where there is none."""
         return {p.name: p for p in self.parameters}[name]

@@ -27,6 +27,7 @@ Kind = Literal[
     "begins_moving",
     "short",
     "slow_sampling",
+    "filtered_input",
     "gaps",
     "one_direction",
     "closed_stop",
@@ -66,6 +67,7 @@ RECORD: dict[Kind, str] = {
     "begins_moving": "Start recording before the shaft moves: how fast it moved at first is not known.",
     "short": "Record a minute, with movements in both directions: less does not show what is rare or grows with time.",
     "slow_sampling": "Record with a shorter sample period: short delays and lags do not show.",
+    "filtered_input": "Record the {input} without a filter: a delay, and a lag of the sensor, do not show behind one.",
     "gaps": "Samples are missing: record on an idle machine, or with the recorder's queue made longer.",
     "one_direction": "To tell friction from the load, record opening and closing over the same angles.",
     "little_travel": "To see what depends on the angle, record movements over the whole travel.",
@@ -135,7 +137,7 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     limits = [
         *_limits_of_movement(motions, runs, noise),
         *_limits_of_start(runs, actuator),
-        *_limits_of_sampling(runs, actuator.scales),
+        *_limits_of_sampling(runs, actuator),
         *_limits_of_reach(motions),
     ]
     return [replace(limit, input=actuator.input) for limit in limits]
@@ -199,8 +201,8 @@ def _limits_of_start(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
     return limits
 
 
-def _limits_of_sampling(runs: Sequence[Run], scales: Scales) -> list[Limit]:
-    limits = []
+def _limits_of_sampling(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
+    limits, scales = [], actuator.scales
     duration = sum(float(run.time[-1] - run.time[0]) for run in runs)
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
@@ -218,6 +220,15 @@ def _limits_of_sampling(runs: Sequence[Run], scales: Scales) -> list[Limit]:
                 "slow_sampling",
                 f"The signal is sampled at {1.0 / median:.3g} Hz: short delays and lags cannot be told apart (they"
                 f" could at {WANTED * SLOW_SAMPLING / scales.time:.2g} Hz).",
+            )
+        )
+    filtered = max(run.input_lag for run in runs)
+    if filtered > 0.0:
+        limits.append(
+            Limit(
+                "filtered_input",
+                f"The {actuator.input} was recorded behind a filter of {filtered:.2g} s, as it seems: a delay, or a lag"
+                " of the sensor, is not told from a shorter filter.",
             )
         )
     lost = float(np.sum(intervals[intervals > GAP * median]))

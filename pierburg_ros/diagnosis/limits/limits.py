@@ -150,10 +150,16 @@ def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
 
 
 def _cases(found: Found, final: Fit) -> Iterator[_Case]:
-    """Each way to act with a single strength, from starts spread over all there are; one of nothing cannot grow."""
+    """Each way to act with a single strength, from starts spread over all there are; one of nothing cannot grow.
+
+    Behind a filter of the input, whose time the recording itself tells, what is late has no limit: the filter may be
+    shorter.
+    """
+    filtered = any(run.input_lag > 0.0 for run in found.data.runs)
     for variant, starts in starts_of(found.data, final.model).items():
-        strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
-        if len(strengths) == 1:
+        effect = EFFECT[variant.effect]
+        strengths = [name for name in effect.strength if name in variant.free]
+        if len(strengths) == 1 and not (filtered and effect.late):
             for start in _spread([start for start in starts if start[strengths[0]] != 0.0]):
                 yield _Case(variant, start, strengths[0])
 

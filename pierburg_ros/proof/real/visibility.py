@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data, all_training, data_of, rms
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
@@ -41,6 +42,7 @@ class Visibility:
 def visibility(recording: Recording, model: Model, changed: Model, name: str) -> Visibility:
     """Judge what changes a `recording` of a machine like `model` as it changes that to `changed`, by the number `name`.
 
+    Behind a filter of the input, whose time each recording tells anew, what comes late is not told from a shorter one.
     InputError where the recording cannot be used.
     """
     data = all_training(data_of([recording], model))
@@ -49,6 +51,9 @@ def visibility(recording: Recording, model: Model, changed: Model, name: str) ->
     remains = scored(data, Estimator(data, model).at(Explanation())).discrepancy
     beside = Estimator(target, model, discrepancy=remains)
     nearest = min(beside.fit(Explanation((drift,)), iterations=BRIEF).chi2 for drift in drifts)
+    effect = EFFECT.get(name.partition(".")[0])
+    if effect and effect.late and any(run.input_lag > 0.0 for run in data.runs):
+        nearest = 0.0
     return Visibility(nearest, _left(target, model, drifts), _left(data, model, drifts))
 
 

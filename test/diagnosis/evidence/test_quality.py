@@ -64,6 +64,13 @@ def test_says_what_short_slow_and_narrow_recordings_leave_open():
     assert "constant_duty" in kinds(run_along())
 
 
+def test_says_that_a_filter_of_the_input_hides_what_is_late():
+    run = replace(run_along(duty=swinging), input_lag=0.08)
+    told = {limit.kind: limit for limit in limits_of([run], PIERBURG, NOISE)}
+    assert "0.08 s" in told["filtered_input"].finding and "duty without a filter" in told["filtered_input"].record
+    assert "filtered_input" not in kinds(run_along(duty=swinging))
+
+
 def test_an_actuator_without_stops_lacks_none():
     bench = read_actuator("xl330")
     run = run_along(duty=swinging)

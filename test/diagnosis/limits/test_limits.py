@@ -70,3 +70,12 @@ def test_limits_found_before_the_time_is_over_are_kept_and_the_others_named(clea
     assert {limit.effect for limit in kept.found} == set(begun[:2])
     assert begun[2] in kept.untested and set(kept.untested).isdisjoint(begun[:2])
     assert deadline.stopped
+
+
+def test_what_is_late_has_no_limit_behind_a_filter_of_the_input(clean):
+    """Its time is read from the same recording, and may be shorter instead."""
+    found, nominal = nothing_named({}, seed=3)
+    runs = tuple(replace(run, input_lag=0.08) for run in found.data.runs)
+    told = limits(replace(found, data=replace(found.data, runs=runs)), nominal, jobs=1)
+    effects = {limit.effect for limit in told.found}
+    assert "pwm_deadband" in effects and not effects & {"input_delay", "sensor_lag"} and not told.untested
