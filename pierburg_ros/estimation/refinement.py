@@ -52,6 +52,11 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
     return replace(lower, refined=True)
 
 
+def lowered(estimator: Estimator, fit: Fit) -> Fit:
+    """`fit`, or a better one of the same explanation from a minimum near by."""
+    return _descended(estimator, fit, leaping=False)
+
+
 def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
     """`fit`, or a lower one, descended to between rests first and then along whole recordings."""
     rests = estimator.between_rests

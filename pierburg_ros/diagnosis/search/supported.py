@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
 from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange
 from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle, unconfirmed
+from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, quantities
@@ -60,7 +60,7 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     try:
         for told in _approached(weighing, reached, known, progress):
             reached = told.scored
-            confirmed = _likelier_of(confirmed, weighing.thinned(told, unconfirmed))
+            confirmed = _likelier_of(confirmed, weighing.heard(told))
     except OutOfTime:
         stopped = True
     return Beside(reached, begun, confirmed, stopped)
@@ -134,7 +134,7 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
     reached = weighing.settled(fit)
     if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, weighing.data, weighing.nominal):
         return beside
-    now = weighing.thinned(weighing.weighed(reached), unconfirmed)
+    now = weighing.heard(weighing.weighed(reached))
     return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
 
 

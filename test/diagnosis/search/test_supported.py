@@ -16,7 +16,7 @@ from pierburg_ros.diagnosis.search.supported import Beside, confirmed_beside, li
 from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weighing, Weight
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
@@ -182,6 +182,39 @@ def test_what_the_others_make_no_model_without_stays(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(Estimator, "fit", refuse)
     assert weighing_it.thinned(told, lambda *_: True) is told
+
+
+def test_the_last_effect_whose_events_jump_is_given_up_only_after_a_search_for_other_minima(monkeypatch):
+    """A delay that stopped at nothing; the search for its other minima, made once, leads to the true one."""
+    data, asked = data_on(disturbed({"input_delay.delay": 0.02}, seed=0)), list[Explanation]()
+    explanation, estimator = Explanation((), (DELAY,)), Estimator(data, NOMINAL)
+    told = Supported(
+        NOMINAL, scored(data, estimator.at(explanation, {"input_delay.delay": 0.0})), {DELAY: Weight(0.0, 100.0)}
+    )
+
+    def lead(beside: Estimator, fit: Fit) -> Fit:
+        asked.append(fit.explanation)
+        return beside.at(fit.explanation, {"input_delay.delay": 0.02})
+
+    monkeypatch.setattr(weighing, "lowered", lead)
+    weighing_it = Weighing(data, NOMINAL, Inline())
+    heard = weighing_it.heard(told)
+    assert set(heard.weights) == {DELAY} and asked == [explanation]
+    assert heard.scored.fit.values["input_delay.delay"] == pytest.approx(0.02, abs=0.002)
+    assert not weighing_it.heard(told).weights and asked == [explanation]
+
+
+def test_what_is_left_without_a_quantity_is_fitted_again_from_likelier_values():
+    """First beside a drift from next to no delay, then from the true one."""
+    data, rest = data_on(disturbed({"input_delay.delay": 0.02}, seed=0)), Explanation((), (DELAY,))
+    estimator, both = Estimator(data, NOMINAL), Explanation(("supply_voltage",), (DELAY,))
+    slow, true = (
+        scored(data, estimator.at(both, {"supply_voltage": 13.5, "input_delay.delay": delay})) for delay in (2e-4, 0.02)
+    )
+    weighing_it = Weighing(data, NOMINAL, Inline())
+    first, again = (weighing_it.lacking(each, "supply_voltage") for each in (slow, true))
+    assert first.fit.explanation == again.fit.explanation == rest and again.cost <= first.cost
+    assert again.fit.values["input_delay.delay"] == pytest.approx(0.02, abs=0.002)
 
 
 def test_values_that_no_actuator_has_are_not_heard():
