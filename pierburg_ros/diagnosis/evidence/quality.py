@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Flags
 from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of

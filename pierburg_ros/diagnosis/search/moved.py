@@ -18,10 +18,10 @@ from pierburg_ros.plant import Model
 def moved(data: Data, nominal: Model, fit: Fit) -> dict[Quantity, float]:
     """Share of the mean square, of what a quantity moves and of what remains, that it moves: 0 to 1.
 
-    To first order, what drifting parameters can do instead is taken out. Of what it moves: what those of the explanation
-    can do, and for an effect one more, whichever does most. Of what remains: what all that may drift can do together,
-    where that helps, for it may bend for what no effect makes. On samples that train or on those that validate,
-    whichever is less.
+    To first order, what drifting parameters can do instead is taken out. Of what it moves: what those of the
+    explanation can do, and for an effect one more, whichever does most. Of what remains: what all that may drift can do
+    together, where that helps, for it may bend for what no effect makes. On samples that train or on those that
+    validate, whichever is less.
     """
     every, own = Estimator(all_training(data), nominal), fit.explanation
     drifts = tuple(dict.fromkeys((*own.drifted, *drifting(nominal))))
