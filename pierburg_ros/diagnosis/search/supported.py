@@ -51,7 +51,8 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
 
     What bends to a remainder gains where it was fitted, and not on samples that validate: of the named, those without
     whose gain there are taken away again, the weakest first. The later ones may bend and take from those before: what
-    is confirmed is heard after each, and the likeliest of that is told.
+    is confirmed is heard after each, and the likeliest of that is told, without what a likelier explanation can do
+    without.
     """
     weighing = Weighing(data, nominal, pool)
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
@@ -60,7 +61,7 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
     try:
         for told in _approached(weighing, reached, known, progress):
             reached = told.scored
-            confirmed = _likelier_of(confirmed, weighing.heard(told))
+            confirmed = _likeliest(confirmed, weighing.heard(told), reached)
     except OutOfTime:
         stopped = True
     return Beside(reached, begun, confirmed, stopped)
@@ -101,9 +102,13 @@ def _added(weighing: Weighing, begin: Scored, progress: Progress) -> Iterator[Su
         yield told
 
 
-def _likelier_of(*confirmed: Supported) -> Supported:
-    """Of what unseen samples confirm that which makes the recordings likeliest."""
-    return min(confirmed, key=lambda each: each.scored.cost)
+def _likeliest(before: Supported, now: Supported, reached: Scored) -> Supported:
+    """Of what unseen samples have confirmed `before` and `now` that which makes the recordings likelier.
+
+    An effect that the likelier explanation `reached` does without stood for what is in that: it is no longer told.
+    """
+    stands = set(before.scored.fit.explanation.effects) <= set(reached.fit.explanation.effects)
+    return min((before, now) if stands else (now,), key=lambda each: each.scored.cost)
 
 
 def _nearest(known: Iterable[Fit]) -> list[Fit]:
@@ -135,7 +140,7 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
     if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, weighing.data, weighing.nominal):
         return beside
     now = weighing.heard(weighing.weighed(reached))
-    return replace(beside, reached=reached, confirmed=_likelier_of(beside.confirmed, now))
+    return replace(beside, reached=reached, confirmed=_likeliest(beside.confirmed, now, reached))
 
 
 def confirmed_beside(fit: Fit, weighing: Weighing) -> bool:

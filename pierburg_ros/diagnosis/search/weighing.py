@@ -22,13 +22,14 @@ from pierburg_ros.plant import Model
 CONFIRMED = 0.5
 """Share of the gain of a quantity, from the samples that train to as many that validate, that these must show as well.
 Derived: halfway between what fits the training samples alone, none of it, and what is there, all of it."""
-EXPLAINS = 0.6
+EXPLAINS = 0.55
 """Share of the mean square, of what a quantity moves and of what remains, that it must move (`moved.py`). Measured: in
 n = 61 trials, beside a remainder, of that alone or of what is outside the catalogue, 24 of the 29 right names that
-carry their part and are confirmed reach 0.65 or more, the others 0.4 or less; nine of 20 wrong ones stay below 0.6."""
-CARRIES = 0.3
+carry their part and are confirmed reach 0.65 or more, in explanations on the way 0.55, the other five 0.4 or less; six
+of 20 wrong ones stay below."""
+CARRIES = 1.0 / 3.0
 """Share of the evidence against the model without any effect that one carries at least. Measured: in the same trials 31
-of 34 right names that are confirmed reach 0.34 or more, and 43 of 61 wrong ones stay below 0.3."""
+of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
 ALONE = 0.8
 """Confidence of a name beside a remainder that nothing else comes near. Measured: Laplace's rule of succession, since
 of effects put into real recordings all of n = 3 such names were right. With one to three rivals three of six were:

@@ -113,6 +113,23 @@ def test_what_a_search_knows_is_taken_where_no_quantity_leads_to_it(monkeypatch:
     assert set(beside.confirmed.weights) == {DELAY}
 
 
+def test_what_a_likelier_explanation_does_without_is_no_longer_told(monkeypatch: pytest.MonkeyPatch):
+    """A lag stood for a delay, which is not confirmed itself: the lag goes all the same."""
+    lag = Variant("sensor_lag", ("time_constant",))
+    data = data_on(disturbed({"input_delay.delay": 0.02}, 0))
+    estimator = Estimator(data, NOMINAL)
+    values = {"sensor_lag.time_constant": 0.01, "input_delay.delay": 0.02}
+    first, then = (
+        Supported(NOMINAL, scored(data, estimator.at(Explanation((), (each,)), values)), {each: Weight(100.0, 0.0)})
+        for each in (lag, DELAY)
+    )
+    monkeypatch.setattr(module, "_approached", lambda *_: iter((first, then)))
+    refused = {id(then): beginning(data).confirmed}
+    monkeypatch.setattr(Weighing, "heard", lambda _, told: refused.get(id(told), told))
+    beside = supported(data, NOMINAL, (), Inline(), lambda _: None)
+    assert beside.reached is then.scored and beside.confirmed.weights == {}
+
+
 def test_more_may_remain_on_unseen_samples_than_where_it_was_fitted():
     """Sixty times the noise there, next to nothing where the fit was made: a delay is as likely as before."""
     clean = recording({"input_delay.delay": 0.005}, duration=16.0)
@@ -144,6 +161,18 @@ def test_of_several_effects_each_carries_its_share_of_what_there_is_without_any(
     """Half of what the others leave, but little beside what these explain."""
     assert Weight(100.0, 100.0, bare=1000.0).carried == pytest.approx(0.1)
     assert Weight(100.0, 100.0, bare=150.0).carried == pytest.approx(0.5)
+
+
+def test_a_drift_that_may_stand_in_for_effects_takes_none_of_their_evidence():
+    """Without them a nominal supply leaves what the nominal model does, however well another one would do instead."""
+    band = Variant("pwm_deadband", ("width",))
+    data = data_on(disturbed({"input_delay.delay": 0.02, "pwm_deadband.width": 0.03}, 0))
+    values = {"supply_voltage": 13.5, "input_delay.delay": 0.02, "pwm_deadband.width": 0.03}
+    fit = Estimator(data, NOMINAL).at(Explanation(("supply_voltage",), (DELAY, band)), values)
+    weighing_it = Weighing(data, NOMINAL, Inline())
+    weights = weighing_it.weighed(scored(data, fit)).weights
+    assert weights[DELAY].bare == weights[band].bare == pytest.approx(beginning(data).begun)
+    assert weighing_it.lacking(scored(data, fit), DELAY, band).left < weights[DELAY].bare - 60.0
 
 
 def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
