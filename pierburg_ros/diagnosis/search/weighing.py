@@ -28,8 +28,8 @@ n = 61 trials, beside a remainder, of that alone or of what is outside the catal
 carry their part and are confirmed reach 0.65 or more, in explanations on the way 0.55, the other five 0.4 or less; six
 of 20 wrong ones stay below."""
 CARRIES = 1.0 / 3.0
-"""Share of the evidence against the model without any effect that one carries at least. Measured: in the same trials 31
-of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
+"""Share of the evidence against the model without any effect that one carries at least. Measured: in the same n = 61
+trials 31 of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
 ALONE = 0.8
 """Confidence of a name beside a remainder that nothing else comes near. Measured: Laplace's rule of succession, since
 of effects put into real recordings all of n = 3 such names were right. With one to three rivals three of six were:
