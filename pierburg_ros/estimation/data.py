@@ -96,6 +96,11 @@ class Data:
         return np.clip(whole, -WILD, WILD)
 
     @property
+    def input_filtered(self) -> bool:
+        """Whether an input was recorded behind a filter, whose time the recording tells: what is late may be that."""
+        return any(run.input_lag > 0.0 for run in self.runs)
+
+    @property
     def in_stretches(self) -> bool:
         """Whether a simulation begins again and again, since the actuator does not forget how it began."""
         return any(run.shooting is not None for run in self.runs)

@@ -155,11 +155,10 @@ def _cases(found: Found, final: Fit) -> Iterator[_Case]:
     Behind a filter of the input, whose time the recording itself tells, what is late has no limit: the filter may be
     shorter.
     """
-    filtered = any(run.input_lag > 0.0 for run in found.data.runs)
     for variant, starts in starts_of(found.data, final.model).items():
         effect = EFFECT[variant.effect]
         strengths = [name for name in effect.strength if name in variant.free]
-        if len(strengths) == 1 and not (filtered and effect.late):
+        if len(strengths) == 1 and not (effect.late and found.data.input_filtered):
             for start in _spread([start for start in starts if start[strengths[0]] != 0.0]):
                 yield _Case(variant, start, strengths[0])
 

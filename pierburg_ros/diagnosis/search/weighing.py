@@ -122,7 +122,7 @@ class Weighing:
     def __init__(self, data: Data, nominal: Model, pool: Executor) -> None:
         self.data, self.nominal, self.pool = data, nominal, pool
         self._known: dict[Explanation, tuple[Scored, float]] = {}
-        self._lowered: set[Explanation] = set()
+        self._from_larger: set[Explanation] = set()
         self._searched: set[Explanation] = set()
 
     def settled(self, fit: Fit) -> Scored:
@@ -138,38 +138,36 @@ class Weighing:
 
         The last effect is not given up before its cost was searched for other local minima, if its events jump.
         """
-        heard = told
-        while (thinner := self._thinner(heard, unconfirmed)) is not heard:
-            reached, own = heard.scored, heard.scored.fit.explanation
+        while (rest := self._rest(told, unconfirmed)) is not None:
+            reached, own = told.scored, told.scored.fit.explanation
             if len(own.variants) == 1 and jumps(own) and own not in self._searched:
                 self._searched.add(own)
                 estimator = estimator_beside(self.data, self.nominal, reached.discrepancy)
-                heard = self.weighed(self.settled(lowered(estimator, estimator.restated(reached.fit))))
-            else:
-                heard = thinner
-        return heard
+                rest = self.settled(lowered(estimator, estimator.restated(reached.fit)))
+            told = self.weighed(rest)
+        return told
 
     def thinned(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
         """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
-        while (thinner := self._thinner(told, out)) is not told:
-            told = thinner
+        while (rest := self._rest(told, out)) is not None:
+            told = self.weighed(rest)
         return told
 
-    def _thinner(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
-        """The explanation without the weakest of the quantities that are `out`, itself where none is.
+    def _rest(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Scored | None:
+        """The explanation without the weakest of the quantities that are `out`, None where none is.
 
         What cannot be left out, since the others make no model without it, stays.
         """
         leaving = {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}
         rests = (self.lacking(told.scored, quantity) for quantity in sorted(leaving, key=lambda one: leaving[one]))
-        rest = next((rest for rest in rests if rest.fit.explanation != told.scored.fit.explanation), None)
-        return told if rest is None else self.weighed(rest)
+        return next((rest for rest in rests if rest.fit.explanation != told.scored.fit.explanation), None)
 
     def weighed(self, reached: Scored) -> Supported:
         """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
         best, validation = self._kept(reached)
         explanation, odd = best.fit.explanation, strange(best.fit, self.data, self.nominal)
-        bare = self._bare(best.fit) if len(explanation.variants) > 1 else 0.0
+        several = len(explanation.variants) > 1
+        bare = self._without(best, *explanation.variants).left if several else 0.0
         shares = moved(self.data, self.nominal, best.fit)
         expected = float(self.data.validation.sum() / self.data.train.sum())
 
@@ -190,27 +188,27 @@ class Weighing:
         changes = quantities(explanation)
         return Supported(self.nominal, best, dict(zip(changes, self.pool.map(weight, changes), strict=True)))
 
-    def _bare(self, fit: Fit) -> float:
-        """What is left where no effect of a fit acts. What drifts stays as it is: fitted again it may stand for one."""
-        explanation = Explanation(fit.explanation.drifted, changed=fit.explanation.changed)
-        return scored(self.data, Estimator(self.data, self.nominal).at(explanation, fit.values)).left
-
     def lacking(self, best: Scored, *out: Quantity) -> Scored:
         """The best without some quantities, the others fitted again; itself if they cannot be left out."""
         return self._lacking(best, *out)[0]
 
     def _lacking(self, best: Scored, *out: Quantity) -> tuple[Scored, float]:
-        rest = functools.reduce(without, out, best.fit.explanation)
-        estimator = estimator_beside(self.data, self.nominal, best.discrepancy)
         try:
-            begin = scored(self.data, estimator.at(rest, best.fit.values))
+            begin = self._without(best, *out)
         except InputError:
             return self._kept(best)
-        if rest not in self._lowered or begin.cost < self._known[rest][0].cost:
-            self._kept(begin)
-            self._kept(settled(self.data, self.nominal, estimator.fit(rest, begin.fit.values, BRIEF)))
-            self._lowered.add(rest)
+        rest = begin.fit.explanation
+        if rest not in self._from_larger or begin.cost < self._known[rest][0].cost:
+            estimator = estimator_beside(self.data, self.nominal, best.discrepancy)
+            found = settled(self.data, self.nominal, estimator.fit(rest, begin.fit.values, BRIEF))
+            self._kept(min(begin, found, key=lambda each: each.cost))
+            self._from_larger.add(rest)
         return self._known[rest]
+
+    def _without(self, best: Scored, *out: Quantity) -> Scored:
+        """The best without some quantities, the others as they are: fitted again, a drift may stand for an effect."""
+        rest = functools.reduce(without, out, best.fit.explanation)
+        return scored(self.data, Estimator(self.data, self.nominal).at(rest, best.fit.values))
 
     def _kept(self, reached: Scored) -> tuple[Scored, float]:
         """The likeliest so far of the same explanation, and what it says of samples that validate."""

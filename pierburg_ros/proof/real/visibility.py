@@ -52,7 +52,7 @@ def visibility(recording: Recording, model: Model, changed: Model, name: str) ->
     beside = Estimator(target, model, discrepancy=remains)
     nearest = min(beside.fit(Explanation((drift,)), iterations=BRIEF).chi2 for drift in drifts)
     effect = EFFECT.get(name.partition(".")[0])
-    if effect and effect.late and any(run.input_lag > 0.0 for run in data.runs):
+    if effect and effect.late and data.input_filtered:
         nearest = 0.0
     return Visibility(nearest, _left(target, model, drifts), _left(data, model, drifts))
 
