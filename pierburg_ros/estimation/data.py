@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.batch import Batch, batches
 from pierburg_ros.estimation.likelihood import coarse_step
 from pierburg_ros.estimation.run import Run, Switch, parts_of, run_of
 from pierburg_ros.estimation.stamp_noise import stamp_noise
@@ -89,11 +91,19 @@ class Data:
         Very large, but a number, from where a model cannot be simulated; and of changing sign, so that no sample tells
         the next.
         """
-        parts = [run.measured - run.simulated(model, switch) for run in self.runs]
-        whole = np.concatenate(parts) / self.noise
+        simulated = np.concatenate([batch.simulated(model, switch) for batch in self._batches])
+        whole = (self._measured - simulated) / self.noise
         missing = np.flatnonzero(~np.isfinite(whole))
         whole[missing] = UNSIMULATED * (1.0 - 2.0 * (missing % 2))
-        return np.clip(whole, -WILD, WILD)
+        return np.asarray(np.clip(whole, -WILD, WILD))
+
+    @cached_property
+    def _batches(self) -> tuple[Batch, ...]:
+        return tuple(batches(self.runs))
+
+    @cached_property
+    def _measured(self) -> Signal:
+        return np.concatenate([run.measured for run in self.runs])
 
     @property
     def input_filtered(self) -> bool:

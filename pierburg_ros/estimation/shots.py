@@ -94,8 +94,9 @@ class Shots:
         angle, velocity = move[0] * self.angle_error, move[1] * self.velocity_error
         # what a slow sensor shows moves with what it senses: else it would swing towards it within the lag
         shown = self.shown + (velocity if self.quantity == "speed" else angle)
-        start = self.angle + angle, self.velocity + velocity
-        return simulate_stretches(self.model, self.inputs, self.time, self.first, *start, shown)
+        none = np.zeros(self.first.size)
+        starts = np.stack([self.angle + angle, self.velocity + velocity, none, none], axis=1)
+        return simulate_stretches(self.model, self.inputs, self.time, self.first, starts, shown)
 
     def _step(self, residual: Signal, by_angle: Signal, by_velocity: Signal) -> tuple[Signal, Signal]:
         """Least-squares step of each beginning, in its errors, shape (2, stretches), and what it promises."""

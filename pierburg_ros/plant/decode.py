@@ -38,15 +38,20 @@ def trail(model: Model) -> tuple[float, float]:
     return float(lag), float(play)
 
 
+def begun(model: Model, shown: NDArray[np.float64], quantity: str) -> NDArray[np.float64]:
+    """The state of a shaft where samples of an angle show some values, shape (starts, 4), as `simulate` begins with it.
+
+    `shown`, shape (starts, 5), are the level of the samples, their rate [1/s], their curvature [1/s^2], the margin
+    within which they tell a stop, and whether they came rising (+1) or falling (-1). Exactly on a stop where the margin
+    allows it.
+    """
+    return np.asarray(sensor.begun(model.record()[0], shown, _is_angle(model, quantity)))
+
+
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
     """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
     shown = decoded(model, measured, quantity)
     return cumulative_trapezoid(shown, time, initial=0.0) if quantity == "speed" else shown
-
-
-def sensitivity(model: Model, angle: float, quantity: str | None = None) -> float:
-    """Change of the measured value per rad at `angle` [rad]; of a speed sensor per rad/s."""
-    return float(sensor.sensitivity(model.record()[0], angle, _is_angle(model, quantity)))
 
 
 def angle_per_unit(model: Model) -> float:

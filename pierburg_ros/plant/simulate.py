@@ -18,7 +18,7 @@ from pierburg_ros.plant.motion.events import settle
 from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import AHEAD, STATE, blank_state, new_state, place
+from pierburg_ros.plant.state import AHEAD, blank_state, new_state, place
 from pierburg_ros.plant.torques.sensor import read_all, show
 from pierburg_ros.workers import workers
 
@@ -191,18 +191,21 @@ def simulate_stretches(
     inputs: Inputs,
     sample_times: ArrayLike,
     first: NDArray[np.int64],
-    angle: Signal,
-    velocity: Signal,
-    lagged: Signal,
+    starts: Signal,
+    lagged: Signal | None = None,
 ) -> Signal:
-    """`simulate` in stretches that begin at the samples `first`, each at its own angle [rad] and velocity [rad/s].
+    """`simulate` in stretches that begin at the samples `first`, each from its own start.
 
-    `lagged` is what a slow sensor shows there [rad, of a velocity rad/s]; all of shape (stretches,).
+    `starts`, shape (stretches, 4), are what `simulate` begins with: angle [rad], velocity [rad/s], acceleration
+    [rad/s^2] and how it came. `lagged`, shape (stretches,), is what a slow sensor shows there [rad, of a velocity
+    rad/s], if not what follows from these.
     """
-    times = _increasing(sample_times)
+    times = _increasing(sample_times, first)
     output = np.empty(times.size)
-    states = np.zeros(first.size, STATE)
-    run_stretches(model.record()[0], states, *_channels(inputs), times, first, angle, velocity, lagged, output)
+    state = blank_state()
+    shown = np.full(first.size, np.nan) if lagged is None else lagged
+    content = state.view(np.uint8)
+    run_stretches(model.record()[0], state[0], content, *_channels(inputs), times, first, starts, shown, output)
     return output
 
 
@@ -239,22 +242,27 @@ def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]
     return inputs.time, inputs.command, supply, enabled
 
 
-def _increasing(sample_times: ArrayLike) -> Signal:
+def _increasing(sample_times: ArrayLike, first: NDArray[np.int64] | None = None) -> Signal:
+    """The sample times, if they increase from each `first` sample to the next; InputError otherwise."""
     times = np.ascontiguousarray(sample_times, dtype=float)
-    if times.ndim != 1 or times.size == 0 or not _increase(times):
+    if times.ndim != 1 or times.size == 0 or not _increase(times, _WHOLE if first is None else first):
         raise InputError("The sample times are empty or do not increase; expected increasing times. Sort them.")
     return times
 
 
+_WHOLE = np.zeros(1, dtype=np.int64)
 _NOTHING = np.empty(0)
 _ALWAYS = np.empty(0, dtype=bool)
 
 
 @kernel
-def _increase(times):
-    """Whether `times`, one or more, are finite and each is later than the one before."""
+def _increase(times, first):
+    """Whether `times`, one or more, are finite and from each sample that is `first` on later than the one before."""
+    stretch = 1
     for index in range(1, times.size):
-        if not times[index] > times[index - 1]:
+        if stretch < first.size and index == first[stretch]:
+            stretch += 1
+        elif not times[index] > times[index - 1]:
             return False
     return np.isfinite(times[0]) and np.isfinite(times[-1])
 
@@ -283,16 +291,19 @@ def run_from(
 
 @kernel
 def run_stretches(
-    p, states, input_times, command, supply_voltage, enabled, sample_times, first, angle, velocity, lagged, output
+    p, s, content, input_times, command, supply_voltage, enabled, sample_times, first, starts, lagged, output
 ):
-    """`run` from each of the samples `first` to the next, at its own angle and velocity; `states` are all zeros."""
+    """`run` from each of the samples `first` to the next, from its own start; `content` are the bytes of `s`."""
     for stretch in range(first.size):
         end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
         times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
-        place(p, states[stretch], angle[stretch], velocity[stretch], 0.0, 0.0)
-        show(states[stretch], lagged[stretch])
-        begin(p, states[stretch], input_times, command, supply_voltage, enabled, times[0])
-        run(p, states[stretch], input_times, command, supply_voltage, enabled, times, part)
+        angle, velocity, acceleration, came = starts[stretch]
+        content[:] = 0
+        place(p, s, angle, velocity, acceleration, came)
+        if not math.isnan(lagged[stretch]):
+            show(s, lagged[stretch])
+        begin(p, s, input_times, command, supply_voltage, enabled, times[0])
+        run(p, s, input_times, command, supply_voltage, enabled, times, part)
 
 
 @kernel

@@ -110,6 +110,31 @@ def sensitivity(p, angle, is_angle):
 
 
 @kernel
+def begun(p, shown, is_angle):
+    """Angle [rad], velocity [rad/s], acceleration [rad/s^2] and way of coming at each start: `plant.decode.begun`."""
+    starts = np.zeros((shown.shape[0], 4))
+    lag, play = trail(p)
+    for start in range(shown.shape[0]):
+        level, rate, curvature, margin, came = shown[start]
+        angle = decode(p, level, is_angle)
+        slope = sensitivity(p, angle, is_angle)
+        near = margin / abs(slope)
+        if angle <= p.lower_stop + near:
+            starts[start, 0] = p.lower_stop
+        elif angle >= p.upper_stop - near:
+            starts[start, 0] = p.upper_stop
+        elif rate == 0.0:
+            came *= np.sign(slope)
+            starts[start, 0], starts[start, 3] = angle + 0.5 * play * came, came
+        else:
+            moves, acceleration = rate / slope, curvature / slope
+            velocity = moves + lag * acceleration
+            starts[start, 0] = angle + lag * moves + 0.5 * play * np.sign(velocity)
+            starts[start, 1], starts[start, 2] = velocity, acceleration
+    return starts
+
+
+@kernel
 def per_radian(p):
     """Mean change of the Hall voltage over the span [V/rad]."""
     return (p.hall_voltage_open - p.hall_voltage_closed) / p.sensor_span
