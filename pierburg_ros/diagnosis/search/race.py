@@ -14,9 +14,10 @@ from pierburg_ros.diagnosis.search.selection import ADEQUATE, PROMISING, adequat
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
 
-ROUNDS = 6
-"""Iterations after which the best are chosen for a whole fit; after half of them those far behind fall out. Work: most
-of a search is spent on them; not varied."""
+ROUNDS = 4
+"""Iterations after which the best are chosen for a whole fit; after half of them those far behind fall out. Measured:
+over n = 148 descents to effects 137 end within 2 % of the lowest after 2, 142 after 3, 143 after 4 and 144 after 6,
+with 1,562, 1,837, 1,977 and 2,113 simulations."""
 BEHIND = 3.0
 """Error over that of the best explanation of the same size from which a candidate is far behind. Measured: with it 22
 of n = 22 practice recordings keep their verdict; other values were not tried."""

@@ -23,7 +23,7 @@ def test_an_effect_whose_events_jump_leaves_the_minimum_that_it_had_without_what
     fit = estimator.fit(BOTH, stuck)
     free = anew(estimator, fit, {STICKS: starts_of(data, fit.model)[STICKS]})
     assert abs(fit.values["static_friction.breakaway_torque"] - 0.27) > 0.05
-    assert free.chi2 < fit.chi2 - 100.0 and abs(free.values["static_friction.breakaway_torque"] - 0.27) < 0.01
+    assert free.chi2 < fit.chi2 - 100.0 and abs(free.values["static_friction.breakaway_torque"] - 0.27) < 0.02
 
 
 def test_an_effect_without_events_is_left_as_it_is():

@@ -33,7 +33,7 @@ def test_a_load_may_ripple_over_angle_and_in_time() -> None:
 
 @pytest.mark.search
 def test_stretches_lead_to_the_noise_where_whole_recordings_do_not() -> None:
-    cogged = {**COGGED, "cogging_torque.phase": 2.5}
+    cogged = {**COGGED, "cogging_torque.phase": 1.9}
     estimator = estimator_on(cogged)
     base, both = estimator.fit(SUPPLY), SUPPLY.plus(COGGING)
     starts = promised(estimator, base, COGGING, starts_of(estimator.data, base.model)[COGGING])[:4]
