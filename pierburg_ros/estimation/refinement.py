@@ -54,7 +54,7 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
 
 def lowered(estimator: Estimator, fit: Fit) -> Fit:
     """`fit`, or a better one of the same explanation from a minimum near by."""
-    return _descended(estimator, fit, leaping=False)
+    return _descended(estimator, fit, leaping=False) if fit.explanation.names else fit
 
 
 def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:

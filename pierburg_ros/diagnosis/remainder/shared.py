@@ -38,6 +38,7 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, without
+from pierburg_ros.estimation.refinement import lowered
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
@@ -68,11 +69,16 @@ class Bench:
     pool: Executor
 
     def settled(self, explanation: Explanation, start: Mapping[str, float]) -> Fit:
-        """The fit carried on until what it leaves is what it is counted against; its residual in noises."""
+        """The fit carried on until what it leaves is what it is counted against; its residual in noises.
+
+        Each time to the lowest of the minima near by: values along a valley that recordings hardly tell apart predict
+        others differently.
+        """
         plain = Estimator(self.data, self.nominal)
         fit = plain.at(explanation, start)
         for _ in range(SETTLING):
-            fit = plain.restated(believing(self.data, self.nominal, fit.solution.residual).fit(explanation, fit.values))
+            counting = believing(self.data, self.nominal, fit.solution.residual)
+            fit = plain.restated(lowered(counting, counting.fit(explanation, fit.values)))
         return fit
 
     def best(self, explanation: Explanation, starts: Sequence[Mapping[str, float]]) -> Fit:
@@ -138,12 +144,16 @@ def _with_last(bench: Bench, before: Round, grown: Fit) -> Round:
 
     The parameters start from where they are and from their nominal values: they may have bent for want of the effect.
     """
-    effects = {name: grown.values[name] for name in grown.explanation.names if "." in name}
-    starts = (grown.values, {**bench.nominal.values, **effects})
-    fit = bench.best(grown.explanation, starts)
+    fit = bench.best(grown.explanation, (grown.values, undrifted(grown, bench.nominal)))
     parts = bench.parts(fit)
     said = said_of(bench.folds, before.parts, parts)
     return Round(fit, parts, {**before.said, grown.explanation.effects[-1]: said})
+
+
+def undrifted(fit: Fit, nominal: Model) -> dict[str, float]:
+    """The values of a fit, but nominal ones of all that may drift, of effects that the actuator always has as well."""
+    own = fit.explanation
+    return {**fit.values, **{name: nominal.values[name] for name in own.drifted}}
 
 
 def thinned(bench: Bench, whole: Round, candidates: int) -> Round:

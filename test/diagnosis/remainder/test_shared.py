@@ -1,15 +1,19 @@
 """Effects that several recordings share, judged on recordings left out."""
 
+from types import SimpleNamespace
+
 import pytest
 from support.fits import found_among
 from support.recordings import NOMINAL, data_on, recording
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.deadline import Deadline, OutOfTime
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut, folds_of
-from pierburg_ros.diagnosis.remainder.shared import Bench, Round, Shared, shared_effects, thinned
+from pierburg_ros.diagnosis.remainder.shared import Bench, Round, Shared, shared_effects, thinned, undrifted
 from pierburg_ros.estimation.data import all_training
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 TRUTH = {"viscous_friction.coefficient": 0.03, "sensor_lag.time_constant": 0.01}
@@ -73,6 +77,15 @@ def test_what_only_stood_in_is_taken_out_again() -> None:
         said = {effect: LeftOut(2.0, 1.0, 3, 3) for effect, _ in ways}
         left = thinned(bench, Round(fit, bench.parts(fit), said), candidates=20)
     assert left.fit.explanation.effects == ("viscous_friction", "sensor_lag") == tuple(left.said)
+
+
+def test_what_drifts_starts_nominal_also_where_it_belongs_to_an_effect() -> None:
+    """Beside a missing effect the friction that a servo always has has bent as any parameter."""
+    servo = Model.nominal(read_actuator("xl330"))
+    drifted = ("torque_constant", "viscous_friction.coefficient")
+    bent = {**servo.values, "torque_constant": 0.5, "viscous_friction.coefficient": 0.1, "backlash.gap": 0.02}
+    fit = SimpleNamespace(explanation=Explanation(drifted, (Variant("backlash", ("gap",)),)), values=bent)
+    assert undrifted(fit, servo) == {**servo.values, "backlash.gap": 0.02}
 
 
 def test_no_time_at_all_is_said() -> None:
