@@ -92,7 +92,7 @@ class Data:
         the next.
         """
         simulated = np.concatenate([batch.simulated(model, switch) for batch in self._batches])
-        whole = (self._measured - simulated) / self.noise
+        whole = (self.measured - simulated) / self.noise
         missing = np.flatnonzero(~np.isfinite(whole))
         whole[missing] = UNSIMULATED * (1.0 - 2.0 * (missing % 2))
         return np.asarray(np.clip(whole, -WILD, WILD))
@@ -102,7 +102,8 @@ class Data:
         return tuple(batches(self.runs))
 
     @cached_property
-    def _measured(self) -> Signal:
+    def measured(self) -> Signal:
+        """What was measured over all runs, shape (samples,), in its own unit."""
         return np.concatenate([run.measured for run in self.runs])
 
     @property

@@ -34,7 +34,7 @@ WAYS = {
 
 @pytest.fixture(scope="module")
 def whole() -> Data:
-    """Ten seconds of a valve that moves and rests."""
+    """24 s of a valve that moves and rests."""
     return data_on(recording({}))
 
 

@@ -131,7 +131,7 @@ def test_stretches_begin_where_they_are_told_and_go_on_alike() -> None:
     whole = simulate(PENDULUM, inputs, TIME, 0.4, -1.0)
     first = np.array([0, 300])
     starts = np.array([[0.4, -1.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0]])
-    cut = simulate_stretches(PENDULUM, inputs, TIME, first, starts)
+    cut = simulate_stretches(PENDULUM, inputs, TIME, first, starts, starts[:, 0])
     assert np.array_equal(cut[:300], whole[:300])
     assert np.array_equal(cut[300:], simulate(PENDULUM, inputs, TIME[300:], 1.0, 2.0))
 

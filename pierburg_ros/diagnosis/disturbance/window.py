@@ -45,7 +45,7 @@ def confined(data: Data, residual: Signal) -> Span | None:
 
 def _moved(data: Data, number: np.ndarray) -> Signal:
     """How far the measured value goes in each block, shape (blocks,); `number` is that of each sample's block."""
-    measured = np.concatenate([run.measured for run in data.runs])
+    measured = data.measured
     highest, lowest = np.full(number[-1] + 1, -np.inf), np.full(number[-1] + 1, np.inf)
     np.maximum.at(highest, number, measured)
     np.minimum.at(lowest, number, measured)
