@@ -35,20 +35,21 @@ def in_balance(signals: Signals, nominal: Model) -> bool:
 
 
 def made_up(signals: Signals, nominal: Model) -> bool:
-    """Whether torques along a motion that goes round make up those of its input, as large as they are described.
+    """Whether torques along a motion that goes round make up those of its input, as large as the actuator has them.
 
-    Then the input is that of the motion, be the shaft ever so slow. Within a single turn any smooth input passes, for
-    nothing comes twice.
+    Then the input is that of the motion, be the shaft ever so slow. How large they are is taken from the description of
+    the actuator: so slow a motion hardly tells an inertia, and a diagnosed model may be far off. Within a single turn
+    any smooth input passes, for nothing comes twice.
     """
     if not goes_round(nominal, signals.measured, signals.quantity):
         return False
     seen = np.ones(signals.time.size, dtype=bool)
     balance = over_a_turn(nominal, [(signals.inputs, signals.time, signals.measured, seen)])
     driven = float(np.var(motor_torque(nominal, signals.inputs, signals.time)))
-    off = math.exp(CREDIBLE)
-    friction, resisted = nominal.values["coulomb_friction"], balance.resistance
+    described, off = Model.nominal(nominal.actuator), math.exp(CREDIBLE)
+    friction, resisted = described.values["coulomb_friction"], balance.resistance
     as_described = friction / off <= resisted <= off * friction if friction > 0.0 else resisted > 0.0
-    return balance.left**2 <= (1.0 - MADE_UP) * driven and as_described and _accelerating(signals, nominal) <= off
+    return balance.left**2 <= (1.0 - MADE_UP) * driven and as_described and _accelerating(signals, described) <= off
 
 
 def _accelerating(signals: Signals, nominal: Model) -> float:

@@ -47,3 +47,10 @@ def test_a_slow_rotor_with_a_coarse_encoder_is_not_blamed():
 def test_within_a_part_of_a_turn_nothing_is_said():
     angle, current = turned(0.05)
     assert not made_up(Signals.of(recorded(0.1 * angle, current)), ROTOR)
+
+
+def test_a_model_whose_inertia_is_off_does_not_make_a_right_input_wrong():
+    """A slow motion hardly tells an inertia: what a diagnosis has found in other recordings may be far off."""
+    angle, current = turned(0.3)
+    heavy = ROTOR.with_values({"total_inertia": 100.0 * ROTOR.values["total_inertia"]})
+    assert [made_up(Signals.of(recorded(angle, each)), heavy) for each in (current, -current)] == [True, False]

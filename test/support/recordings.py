@@ -1,5 +1,7 @@
 """Recordings for the tests of the diagnosis, made by the simulator, so that only its own logic is at stake."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
@@ -63,3 +65,13 @@ def recording_under(
         hall + NOISE * random.standard_normal(time.size),
         Channel(time, duty),
     )
+
+
+def disturbed(changes: dict[str, float], seed: int) -> Recording:
+    """A recording of the valve with `changes` beside a slow wave of ten times the noise that no effect makes."""
+    clean = recording(changes, duration=16.0, seed=seed)
+    random = np.random.default_rng(seed + 100)
+    knots = np.linspace(clean.time[0], clean.time[-1], 12)
+    wave = np.interp(clean.time, knots, random.normal(0.0, 10.0 * NOISE, knots.size))
+    wave[clean.time < 0.5] = 0.0
+    return replace(clean, measured=clean.measured + wave)

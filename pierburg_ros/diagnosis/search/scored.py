@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -52,11 +53,17 @@ def estimator_beside(data: Data, nominal: Model, discrepancy: Discrepancy) -> Es
 
 
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
-    """`fit` with its most likely discrepancy, or fitted again with that, whichever is likelier."""
-    first = scored(data, fit)
-    estimator = estimator_beside(data, nominal, first.discrepancy)
-    again = scored(data, estimator.fit(fit.explanation, fit.values, BRIEF))
-    return min(first, again, key=lambda each: each.cost)
+    """`fit` with its most likely discrepancy, fitted again with that while it makes the recordings likelier.
+
+    It ends where one more time gains no more than chance gives a quantity.
+    """
+    best = scored(data, fit)
+    while True:
+        estimator = estimator_beside(data, nominal, best.discrepancy)
+        before, again = best, scored(data, estimator.fit(fit.explanation, best.fit.values, BRIEF))
+        best = min(before, again, key=lambda each: each.cost)
+        if before.cost - best.cost < PROMISING:
+            return best
 
 
 def plausible(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:

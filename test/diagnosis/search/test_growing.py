@@ -1,10 +1,12 @@
 """Explanations with one quantity more: what was fitted in the place of something else is begun anew beside it."""
 
-from support.recordings import NOMINAL, data_on, recording
+import pytest
+from support.recordings import NOMINAL, data_on, disturbed, recording
 
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.growing import anew, grown
-from pierburg_ros.diagnosis.search.scored import estimator_beside, scored
+from pierburg_ros.diagnosis.search.scored import estimator_beside, scored, settled
+from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.workers import workers
@@ -41,3 +43,27 @@ def test_what_makes_a_recording_likeliest_comes_first():
         found = grown(data, NOMINAL, base, pool, lambda _: None)
     assert found[0].fit.explanation.effects == ("sensor_lag",)
     assert [each.cost for each in found] == sorted(each.cost for each in found)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("armature_resistance", 4.9), ("coulomb_friction", 0.226), ("spring_preload", 0.344)]
+)
+def test_a_drift_is_found_though_a_discrepancy_explains_all_that_it_makes(name, value):
+    """Beside that discrepancy a descent does not move, and a dead band or heat would come first."""
+    data = data_on(disturbed({name: value}, 0))
+    base = scored(data, Estimator(data, NOMINAL).at(Explanation()))
+    with workers(1) as pool:
+        found = grown(data, NOMINAL, base, pool, lambda _: None)[0]
+    assert found.fit.explanation == Explanation((name,))
+    assert found.fit.values[name] == pytest.approx(value, rel=0.02)
+
+
+def test_a_fit_is_settled_when_its_own_discrepancy_moves_it_no_further():
+    """What remains gets smaller with each time, and then a descent moves again."""
+    stop = Variant("stop_compliance", ("stiffness", "damping"))
+    true = {"coulomb_friction": 0.226, "stop_compliance.stiffness": 12.0, "stop_compliance.damping": 0.02}
+    data = data_on(disturbed(true, 0))
+    begun = {"stop_compliance.stiffness": 8.4, "stop_compliance.damping": 0.014}
+    found = settled(data, NOMINAL, Estimator(data, NOMINAL).at(Explanation(("coulomb_friction",), (stop,)), begun))
+    assert found.cost - settled(data, NOMINAL, found.fit).cost < PROMISING
+    assert found.fit.values["coulomb_friction"] == pytest.approx(0.226, rel=0.02)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recordings import NOISE, NOMINAL, data_on, recording
+from support.recordings import NOISE, NOMINAL, data_on, disturbed, recording
 
 from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search import supported as module
@@ -18,20 +18,11 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
 DELAY = Variant("input_delay", ("delay",))
-
-
-def disturbed(changes: dict[str, float], seed: int) -> Recording:
-    """A recording of the valve with `changes` beside a slow wave of ten times the noise that no effect makes."""
-    clean = recording(changes, duration=16.0, seed=seed)
-    random = np.random.default_rng(seed + 100)
-    knots = np.linspace(clean.time[0], clean.time[-1], 12)
-    wave = np.interp(clean.time, knots, random.normal(0.0, 10.0 * NOISE, knots.size))
-    wave[clean.time < 0.5] = 0.0
-    return replace(clean, measured=clean.measured + wave)
+ROUND = 2 * FOLLOWED
+"""How many additions are fitted before one is chosen, some in each of two ways."""
 
 
 class Inline(Executor):
@@ -72,12 +63,12 @@ def test_what_is_confirmed_when_the_time_is_over_is_kept():
 
     def tell(what: str) -> None:
         told.append(what)
-        if len(told) > FOLLOWED:
+        if len(told) > ROUND:
             raise OutOfTime
 
     beside = supported(data, NOMINAL, (), Inline(), tell)
     assert beside.stopped and set(beside.confirmed.weights) == {DELAY}
-    told.extend([""] * FOLLOWED)
+    told.extend([""] * ROUND)
     assert supported(data, NOMINAL, (), Inline(), tell).confirmed.weights == {}
 
 
