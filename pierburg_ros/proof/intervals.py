@@ -28,7 +28,8 @@ class Share:
         share, square = self.count / self.total, NORMAL_95**2 / self.total
         centre = (share + square / 2) / (1 + square)
         reach = math.sqrt(share * (1 - share) * square + square**2 / 4) / (1 + square)
-        return max(centre - reach, 0.0), min(centre + reach, 1.0)
+        # rounding may not put the share outside
+        return min(max(centre - reach, 0.0), share), max(min(centre + reach, 1.0), share)
 
     def __str__(self) -> str:
         if self.total == 0:

@@ -37,3 +37,11 @@ def test_nothing_counted_says_so():
 
 def test_a_share_is_written_with_its_interval():
     assert str(Share(19, 20)) == "19/20 (76 to 99 %)"
+
+
+@pytest.mark.parametrize("total", range(1, 500))
+def test_the_share_itself_lies_within(total):
+    """Rounding takes an end past it where all, or none, were counted."""
+    for count in (0, total):
+        low, high = Share(count, total).interval
+        assert low <= count / total <= high
