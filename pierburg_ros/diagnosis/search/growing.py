@@ -20,7 +20,7 @@ from pierburg_ros.plant import Model
 
 FOLLOWED = 3
 """Additions of each round and way that are fitted, of those that a linear step promises most. Work: each costs a brief
-descent; with 6 and 3 fitted again no more of n = 5 trials beside a remainder were named."""
+descent; with 6, and 3 fitted again, no more of n = 4 trials beside a remainder were named."""
 SETTLED = 2
 """How many of them are fitted again, each with its own discrepancy. Work: each costs a brief descent and a search for
 the discrepancy."""

@@ -1,6 +1,5 @@
 """How a search grows explanations: it finds pairs, keeps to its beam, and ends when its budget is spent."""
 
-import math
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
@@ -222,16 +221,29 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
 
 
 @pytest.mark.parametrize(
-    ("asked", "left", "resigned"),
-    [(1.0, 3.0, True), (1.0, 1.0, False), (2.0, 3.0, False), (math.inf, 3.0, False)],
+    ("resigns", "left", "waited", "resigned"),
+    [(True, 3.0, 2.1, True), (True, 1.0, 2.1, False), (True, 3.0, 1.9, False), (False, 3.0, 2.1, False)],
 )
-def test_it_resigns_half_as_long_again_after_it_was_asked_what_is_likeliest(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, asked: float, left: float, resigned: bool
+def test_it_resigns_as_long_after_the_answer_as_it_had_worked_before_it_asked(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, resigns: bool, left: float, waited: float, resigned: bool
 ) -> None:
-    """After two seconds of work, having been asked so long after its beginning, or never; the best leaves so much."""
-    empty._begun, empty._asked = 10.0, 10.0 + asked
-    empty.keep(made_up(ONES[0], left, NOMINAL))
-    monkeypatch.setattr(module.time, "process_time", lambda: 12.0)
+    """After two seconds of work it is asked, which takes five, and goes on; the best leaves so much."""
+    reached, clock = made_up(ONES[0], left, NOMINAL), [12.0]
+    scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), reached.solution.residual.size)
+    beside = Beside(scored, 10_000.0, Supported(NOMINAL, scored, {}))
+
+    def answered(*_: object) -> Beside:
+        clock[0] += 5.0
+        return beside
+
+    monkeypatch.setattr(module.time, "process_time", lambda: clock[0])
+    monkeypatch.setattr(module, "supported", answered)
+    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, left, NOMINAL)))
+    monkeypatch.setattr(empty, "refine", lambda _: None)
+    empty._begun, empty.beam = 10.0, Beam(resigns=resigns)
+    empty._likeliest_accounts_for_all()
+    empty.check()
+    clock[0] += waited
     with pytest.raises(Resigned) if resigned else nullcontext():
         empty.check()
     assert empty.resigned == resigned
