@@ -60,9 +60,9 @@ def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
     best = scored(data, fit)
     while True:
         estimator = estimator_beside(data, nominal, best.discrepancy)
-        before, again = best, scored(data, estimator.fit(fit.explanation, best.fit.values, BRIEF))
-        best = min(before, again, key=lambda each: each.cost)
-        if before.cost - best.cost < PROMISING:
+        again = scored(data, estimator.fit(fit.explanation, best.fit.values, BRIEF))
+        gain, best = best.cost - again.cost, min(best, again, key=lambda each: each.cost)
+        if gain < PROMISING:
             return best
 
 
