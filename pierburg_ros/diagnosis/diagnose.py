@@ -23,8 +23,9 @@ from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
-from pierburg_ros.diagnosis.search.found import Found, search
+from pierburg_ros.diagnosis.search.found import Found, search, settled_on
 from pierburg_ros.diagnosis.search.search import Beam
+from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.supported import confirmed_beside
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.search.weighing import Weighing
@@ -33,6 +34,7 @@ from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
+from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
@@ -118,6 +120,8 @@ def examined(
     tell = staged(progress, "what remains")
     witness = recordings[0] if single else None
     named = deadline.attempt(partial(standing, found, tell, jobs, deadline, witness), Standing(found.estimator))
+    if (explained := explains_all(named, found)) is not None:
+        return settled_on(found, explained, jobs, deadline), None
     if single and not turning:
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
@@ -128,6 +132,17 @@ def examined(
                 return beside, unexamined(beside)
             found = replace(found, data=replace(found.data, remarks=beside.data.remarks))
     return found, deadline.attempt(partial(remainder, found, named, tell, jobs, deadline), unexamined(found, named))
+
+
+def explains_all(named: Standing, found: Found) -> Fit | None:
+    """What stands, fitted as an explanation of all; None where it leaves something.
+
+    A search that was stopped may not have come to it.
+    """
+    if named.base is None or found.estimator.restated(named.base).ratio >= EXPLAINED:
+        return None
+    fit = found.estimator.fit(named.base.explanation, named.base.values)
+    return fit if adequate(fit) else None
 
 
 def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]:

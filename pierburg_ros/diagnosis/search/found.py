@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import qr
@@ -91,7 +91,9 @@ def search(
         recalibrated = _recalibrated(found, pool)
     final, known = chosen, dict[str, Estimate]()
     if adequate(chosen):
-        final, known = deadline.attempt(lambda: _last_values(found, chosen, jobs, deadline), (final, known))
+        final, known = deadline.attempt(
+            lambda: _last_values(found.data, nominal, chosen, jobs, deadline), (final, known)
+        )
     fits = dict(found.fits)
     return Found(
         found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted, found.beside
@@ -138,13 +140,22 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
     return tell
 
 
-def _last_values(found: Search, chosen: Fit, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
+def settled_on(found: Found, fit: Fit, jobs: int | None, deadline: Deadline) -> Found:
+    """`found` with a `fit` that accounts for all chosen in the end, with last values where time is left for them."""
+    data, nominal, last = found.data, found.nominal, (fit, dict[str, Estimate]())
+    final, known = deadline.attempt(lambda: _last_values(data, nominal, fit, jobs, deadline), last)
+    return replace(found, fits={**found.fits, fit.explanation: fit}, chosen=fit, final=final, estimates=known)
+
+
+def _last_values(
+    data: Data, nominal: Model, chosen: Fit, jobs: int | None, deadline: Deadline
+) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
     Where events jump, other local minima are searched, unless the search has: a fit may reach the noise in one that is
     not the lowest.
     """
-    estimator = Estimator(with_validation(found.data), found.nominal)
+    estimator = Estimator(with_validation(data), nominal)
     fit = estimator.fit(chosen.explanation, chosen.values)
     with workers(jobs, deadline) as pool:
         if jumps(fit.explanation) and not chosen.refined:

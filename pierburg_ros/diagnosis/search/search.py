@@ -23,17 +23,12 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, quantities, without
-from pierburg_ros.estimation.refinement import refined
+from pierburg_ros.estimation.refinement import NEARLY, refined
 from pierburg_ros.plant import Model
 
 FIRST_PART = 2 * CYCLE * BLOCK
 """How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
 that every kind of block is there twice."""
-NEARLY = 5.0
-"""Training error over noise up to which the best explanation may only have stopped too early, and a search does not
-resign; and that of the likeliest over the least up to which it may. Chosen: descents to true explanations were seen to
-stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest at 1.9 times the least, and a search resigned at 1.18
-times the noise whose truth was found 18 s later; not varied."""
 LEADING = 0.25
 """Share of chi2 that one more quantity leaves at most for its explanation to be grown before others of its size are
 tried. Chosen: what halves the error is hardly there by chance, and trying it costs a tenth of the others. In n = 2

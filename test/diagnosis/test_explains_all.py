@@ -1,0 +1,55 @@
+"""What stands beside a remainder becomes the explanation of all where it leaves nothing."""
+
+from dataclasses import replace
+
+import pytest
+from support.fits import found_among, made_up
+from support.recordings import NOMINAL, data_on, recording
+
+from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.diagnose import explains_all
+from pierburg_ros.diagnosis.remainder.standing import Standing
+from pierburg_ros.diagnosis.search.found import Found, settled_on
+from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
+from pierburg_ros.estimation.explanation import Explanation, Variant
+
+RUBS = Explanation(variants=(Variant("load_dependent_friction", ("coefficient",)),))
+TRUE = {"load_dependent_friction.coefficient": 0.05}
+
+
+@pytest.fixture
+def stopped() -> Found:
+    """A search of a valve whose gear rubs with the load, stopped before it came to that."""
+    data = data_on(recording(TRUE, duration=6.0))
+    nominal = made_up(Explanation(), 5.0, NOMINAL)
+    return replace(found_among(data, nominal), recalibrated=nominal)
+
+
+def standing(found: Found, values: dict[str, float]) -> Standing:
+    return Standing(found.estimator, found.estimator.at(RUBS, values))
+
+
+def test_what_stands_and_leaves_nothing_is_the_verdict(stopped):
+    fit = explains_all(standing(stopped, {"load_dependent_friction.coefficient": 0.0499}), stopped)
+    assert fit is not None
+    settled = settled_on(stopped, fit, 1, Deadline())
+    assert verdict_on(stopped.chosen) == "unexplained"
+    assert verdict_on(settled.chosen) == "missing_physics"
+    assert settled.final.values["load_dependent_friction.coefficient"] == pytest.approx(0.05, rel=0.01)
+    assert "load_dependent_friction.coefficient" in settled.estimates
+    assert conclude(settled).verdict == "missing_physics"
+
+
+def test_what_leaves_something_stays_beside_a_remainder(stopped):
+    assert explains_all(standing(stopped, {"load_dependent_friction.coefficient": 0.02}), stopped) is None
+
+
+def test_where_nothing_stands_nothing_is_settled(stopped):
+    assert explains_all(Standing(stopped.estimator), stopped) is None
+
+
+def test_without_time_for_intervals_the_values_are_those_that_stood(stopped):
+    fit = stopped.estimator.fit(RUBS, TRUE)
+    settled = settled_on(stopped, fit, 1, Deadline(0.0))
+    assert settled.chosen is settled.final is fit
+    assert not settled.estimates
