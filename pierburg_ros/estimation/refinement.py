@@ -82,10 +82,11 @@ def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
 def _evolved(estimator: Estimator, fit: Fit) -> Fit:
     """`fit`, or a lower one that a population around it has come to: one slip more or less makes a step in the cost.
 
-    Points are drawn to where chi2 has risen by itself, and no further than what is usual.
+    Points are drawn to where chi2 has risen by itself, by slopes over the usual differences, and no further than what
+    is usual. Slopes over finer ones, as the last descent may have left them, are those of a single step.
     """
     explanation, coordinates = fit.explanation, estimator.coordinates(fit.explanation)
-    slopes = fit.solution.jacobian
+    slopes = estimator.restated(fit).solution.jacobian
     usual = np.array([1.0 if "." in name else KNOWN for name in explanation.names])
     spread = np.linalg.inv(slopes.T @ slopes / fit.chi2 + np.diag(usual**-2.0))
 
