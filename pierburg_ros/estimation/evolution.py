@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,20 +12,6 @@ from pierburg_ros.estimation.least_squares import Map
 HISTORY = (10.0, 30.0)
 """Generations whose best points agree before it ends: so many, and so many times the quantities over the points of one.
 Given: the tutorial's criterion `TolFun`."""
-
-
-@dataclass(frozen=True)
-class _Rates:
-    """How fast a population of `points` in `dimension` quantities learns (Hansen 2016, table 1)."""
-
-    weights: Signal
-    mass: float
-    step: float
-    damping: float
-    path: float
-    one: float
-    many: float
-    length: float
 
 
 def evolved(
@@ -48,56 +33,75 @@ def evolved(
 
     Source: N. Hansen, The CMA Evolution Strategy: A Tutorial, arXiv:1604.00772 (2016).
     """
-    size, rates = begin.size, _rates(begin.size, points)
-    random = np.random.default_rng(1)
-    mean, shape, sigma = begin.copy(), np.array(covariance, np.float64), 1.0
-    step_path, shape_path = np.zeros(size), np.zeros(size)
-    lowest, best = np.inf, begin
-    history = list[float]()
-    last = int(np.ceil(HISTORY[0] + HISTORY[1] * size / points))
-    for generation in range(1, generations + 1):
-        lengths, axes = np.linalg.eigh(shape)
-        lengths = np.sqrt(np.maximum(lengths, np.finfo(float).tiny))
-        drawn = mean + sigma * (random.standard_normal((points, size)) * lengths) @ axes.T
-        drawn = np.clip(drawn, *bounds)
+    population, random = _Population(begin, covariance, points), np.random.default_rng(1)
+    lowest, best, history = np.inf, begin, list[float]()
+    last = int(np.ceil(HISTORY[0] + HISTORY[1] * begin.size / points))
+    for _ in range(generations):
+        drawn = np.clip(population.drawn(random), *bounds)
         costs = np.array(list(over(cost, list(drawn))))
         order = np.argsort(costs)
-        if costs[order[0]] < lowest:
-            lowest, best = float(costs[order[0]]), drawn[order[0]]
         history.append(float(costs[order[0]]))
+        if history[-1] < lowest:
+            lowest, best = history[-1], drawn[order[0]]
         recent = history[-last:]
         agreed = len(recent) == last and max(recent) - min(recent) < tolerance
         if agreed or costs[order[-1]] - costs[order[0]] < tolerance:
             break
-        moves = (drawn[order[: rates.weights.size]] - mean) / sigma
-        move = rates.weights @ moves
-        mean = mean + sigma * move
-        own = axes @ ((axes.T @ move) / lengths)
-        step_path = (1.0 - rates.step) * step_path + np.sqrt(rates.step * (2.0 - rates.step) * rates.mass) * own
-        long = float(np.linalg.norm(step_path)) / np.sqrt(1.0 - (1.0 - rates.step) ** (2 * generation))
-        held = float(long < (1.4 + 2.0 / (size + 1.0)) * rates.length)
-        shape_path *= 1.0 - rates.path
-        shape_path += held * np.sqrt(rates.path * (2.0 - rates.path) * rates.mass) * move
-        shape *= 1.0 - rates.one - rates.many + (1.0 - held) * rates.one * rates.path * (2.0 - rates.path)
-        shape += rates.one * np.outer(shape_path, shape_path) + rates.many * (moves.T * rates.weights) @ moves
-        sigma *= float(np.exp(rates.step / rates.damping * (np.linalg.norm(step_path) / rates.length - 1.0)))
+        population.learn(drawn[order])
     return best
 
 
-def _rates(size: int, points: int) -> _Rates:
-    better = points // 2
-    weights = np.log(better + 0.5) - np.log(np.arange(1, better + 1))
-    weights /= np.sum(weights)
-    mass = 1.0 / float(np.sum(weights**2))
-    step = (mass + 2.0) / (size + mass + 5.0)
-    one = 2.0 / ((size + 1.3) ** 2 + mass)
-    return _Rates(
-        weights,
-        mass,
-        step,
-        1.0 + step + 2.0 * max(0.0, np.sqrt((mass - 1.0) / (size + 1.0)) - 1.0),
-        (4.0 + mass / size) / (size + 4.0 + 2.0 * mass / size),
-        one,
-        min(1.0 - one, 2.0 * (mass - 2.0 + 1.0 / mass) / ((size + 2.0) ** 2 + mass)),
-        np.sqrt(size) * (1.0 - 1.0 / (4.0 * size) + 1.0 / (21.0 * size**2)),
-    )
+class _Population:
+    """Where `points` are drawn, and how fast it follows the better half of them.
+
+    They lie around a `mean`, normally distributed, with a covariance of the square of `sigma` times a `shape`. Names in
+    the tutorial: `mass` mu_eff; the rates `step_rate` c_sigma, `path_rate` c_c, `one_rate` c_1, `many_rate` c_mu;
+    `damping` d_sigma (table 1 there); `usual` the mean length of a random step.
+    """
+
+    def __init__(self, mean: Signal, covariance: Signal, points: int) -> None:
+        size, better = mean.size, points // 2
+        self.points = points
+        self.mean, self.shape, self.sigma = mean.copy(), np.array(covariance, np.float64), 1.0
+        self.lengths, self.directions = _axes(self.shape)
+        self.step_path, self.shape_path = np.zeros(size), np.zeros(size)
+        self.learnt = 0
+        self.weights = np.log(better + 0.5) - np.log(np.arange(1, better + 1))
+        self.weights /= np.sum(self.weights)
+        mass = self.mass = 1.0 / float(np.sum(self.weights**2))
+        self.step_rate = (mass + 2.0) / (size + mass + 5.0)
+        self.damping = 1.0 + self.step_rate + 2.0 * max(0.0, np.sqrt((mass - 1.0) / (size + 1.0)) - 1.0)
+        self.path_rate = (4.0 + mass / size) / (size + 4.0 + 2.0 * mass / size)
+        self.one_rate = 2.0 / ((size + 1.3) ** 2 + mass)
+        self.many_rate = min(1.0 - self.one_rate, 2.0 * (mass - 2.0 + 1.0 / mass) / ((size + 2.0) ** 2 + mass))
+        self.usual = np.sqrt(size) * (1.0 - 1.0 / (4.0 * size) + 1.0 / (21.0 * size**2))
+
+    def drawn(self, random: np.random.Generator) -> Signal:
+        """The next points, shape (points, quantities)."""
+        steps = random.standard_normal((self.points, self.mean.size)) * self.lengths
+        return np.asarray(self.mean + self.sigma * steps @ self.directions.T)
+
+    def learn(self, ordered: Signal) -> None:
+        """Move to the better half of the points, the best first, and take on the shape of the way there."""
+        size, step, path, one, many = self.mean.size, self.step_rate, self.path_rate, self.one_rate, self.many_rate
+        self.learnt += 1
+        moves = (ordered[: self.weights.size] - self.mean) / self.sigma
+        move = self.weights @ moves
+        self.mean = self.mean + self.sigma * move
+        unshaped = self.directions @ ((self.directions.T @ move) / self.lengths)
+        self.step_path = (1.0 - step) * self.step_path + np.sqrt(step * (2.0 - step) * self.mass) * unshaped
+        length = float(np.linalg.norm(self.step_path))
+        settled = length / np.sqrt(1.0 - (1.0 - step) ** (2 * self.learnt)) < (1.4 + 2.0 / (size + 1.0)) * self.usual
+        self.shape_path *= 1.0 - path
+        if settled:
+            self.shape_path += np.sqrt(path * (2.0 - path) * self.mass) * move
+        self.shape *= 1.0 - one - many + (0.0 if settled else one * path * (2.0 - path))
+        self.shape += one * np.outer(self.shape_path, self.shape_path) + many * (moves.T * self.weights) @ moves
+        self.sigma *= float(np.exp(step / self.damping * (length / self.usual - 1.0)))
+        self.lengths, self.directions = _axes(self.shape)
+
+
+def _axes(shape: Signal) -> tuple[Signal, Signal]:
+    """Lengths of the axes of a covariance, and their directions as columns."""
+    squares, directions = np.linalg.eigh(shape)
+    return np.sqrt(np.maximum(squares, np.finfo(float).tiny)), directions

@@ -37,9 +37,10 @@ AGAIN = 0.5
 """Share of the cost below which it starts between rests once more, where something is left. Chosen: a fall by half says
 that it began in another valley; not varied."""
 NEARLY = 5.0
-"""Training error over noise up to which a fit may only have stopped too early. Chosen: descents to true explanations
-were seen to stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest beside a remainder at 1.9 times the least,
-and a search resigned at 1.18 times the noise whose truth was found 18 s later; not varied."""
+"""Training error over noise up to which the best explanation may only have stopped too early: a population goes on,
+and a search does not resign; and that of the likeliest over the least up to which it may. Chosen: descents to true
+explanations were seen to stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest at 1.9 times the least, and a
+search resigned at 1.18 times the noise whose truth was found 18 s later; not varied."""
 POINTS = 4
 """Points of a population for each quantity. Measured: with 12 for three quantities each of n = 3 searches along whole
 recordings of static friction beside a drift comes from 1.12 times the noise to 1.02, where the true values are; with 7

@@ -5,7 +5,7 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.estimation.refinement import refined
+from pierburg_ros.estimation.refinement import FINEST, _evolved, refined
 
 STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))
 
@@ -29,3 +29,15 @@ def test_never_makes_a_fit_worse() -> None:
     assert again.refined and not fit.refined
     assert again.chi2 <= fit.chi2
     assert again.values["spring_preload"] == pytest.approx(0.3, rel=0.002)
+
+
+def test_a_population_goes_on_from_where_slopes_say_nothing() -> None:
+    """Whatever the differences of the last descent: over fine ones a single slip makes a slope that is none."""
+    truth = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}
+    estimator = Estimator(data_on(recording(truth)), NOMINAL)
+    start = {"static_friction.breakaway_torque": 0.265, "static_friction.stribeck_velocity": 0.08}
+    stopped = estimator.fit(STICTION, start, steps=FINEST * estimator.coordinates(STICTION).steps)
+    found = _evolved(estimator, stopped)
+    assert stopped.ratio > 2.0
+    assert found.ratio < 1.03
+    assert found.values == _evolved(estimator, estimator.restated(stopped)).values

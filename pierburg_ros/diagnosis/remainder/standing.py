@@ -109,8 +109,8 @@ def _outdone(stood: Supported, found: Found) -> bool:
     fit = stood.scored.fit
     if fit.explanation.variants or not fit.explanation.size:
         return False
-    told = Estimator(found.data, stood.nominal).validation_misfit(fit)
     misfit = found.estimator.validation_misfit
+    told = misfit(fit)
     return told >= BETTER**2 * misfit(found.fits[Explanation()]) or misfit(found.recalibrated) < BETTER**2 * told
 
 

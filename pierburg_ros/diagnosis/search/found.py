@@ -89,15 +89,19 @@ def search(
         found.progress = progress
         chosen = found.preferred() if found.fits else found.add(Explanation())
         recalibrated = _recalibrated(found, pool)
-    final, known = chosen, dict[str, Estimate]()
-    if adequate(chosen):
-        final, known = deadline.attempt(
-            lambda: _last_values(found.data, nominal, chosen, jobs, deadline), (final, known)
-        )
-    fits = dict(found.fits)
-    return Found(
-        found.data, nominal, found.drifts, fits, chosen, final, known, recalibrated, found.exhausted, found.beside
+    result = Found(
+        found.data,
+        nominal,
+        found.drifts,
+        dict(found.fits),
+        chosen,
+        chosen,
+        {},
+        recalibrated,
+        found.exhausted,
+        found.beside,
     )
+    return settled_on(result, chosen, jobs, deadline) if adequate(chosen) else result
 
 
 def _grown(
@@ -142,20 +146,18 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
 
 def settled_on(found: Found, fit: Fit, jobs: int | None, deadline: Deadline) -> Found:
     """`found` with a `fit` that accounts for all chosen in the end, with last values where time is left for them."""
-    data, nominal, last = found.data, found.nominal, (fit, dict[str, Estimate]())
-    final, known = deadline.attempt(lambda: _last_values(data, nominal, fit, jobs, deadline), last)
-    return replace(found, fits={**found.fits, fit.explanation: fit}, chosen=fit, final=final, estimates=known)
+    chosen = replace(found, fits={**found.fits, fit.explanation: fit}, chosen=fit)
+    final, known = deadline.attempt(lambda: _last_values(chosen, jobs, deadline), (fit, dict[str, Estimate]()))
+    return replace(chosen, final=final, estimates=known)
 
 
-def _last_values(
-    data: Data, nominal: Model, chosen: Fit, jobs: int | None, deadline: Deadline
-) -> tuple[Fit, dict[str, Estimate]]:
+def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
     Where events jump, other local minima are searched, unless the search has: a fit may reach the noise in one that is
     not the lowest.
     """
-    estimator = Estimator(with_validation(data), nominal)
+    chosen, estimator = found.chosen, Estimator(with_validation(found.data), found.nominal)
     fit = estimator.fit(chosen.explanation, chosen.values)
     with workers(jobs, deadline) as pool:
         if jumps(fit.explanation) and not chosen.refined:
