@@ -54,28 +54,32 @@ def load(graph, node, file):
     assert [result.reason for result in graph.set(node, **values) if not result.successful] == []
 
 
-def on_the_way(graph, model, setpoints, file=None) -> int:
+def on_the_way(graph, model, file=None) -> int:
     """Samples between closed stop and target of a step, in lockstep; `file` goes into the running controller."""
     sensed = graph.watch("hall_voltage", Float64)
-    graph.start("controller", "use_sim_time:=true", "hall_timeout:=0", f"setpoint_file:={setpoints}")
+    graph.start("controller", "use_sim_time:=true", "hall_timeout:=0", "setpoint:=0.0")
     if file is not None:
         load(graph, "controller", file)
     graph.start("plant", "lockstep:=true", "time_factor:=0", "command_timeout:=0", f"model:={model}")
-    graph.until(lambda: len(sensed) > TICKS, "a run in lockstep")
     margin = hall(math.radians(0.5)) - hall(0.0)
+    graph.until(lambda: sensed, "the closed stop")  # only what hears the plant hears the whole step
+    graph.publish("setpoints", Float64(data=FROM_THE_STOP))
+    graph.until(lambda: sensed[-1].data > hall(FROM_THE_STOP) - margin, "the target")
+    arrived = len(sensed)
+    graph.until(lambda: len(sensed) > arrived + TICKS, "what follows")
     assert abs(sensed[-1].data - hall(FROM_THE_STOP)) < margin
     return sum(hall(0.0) + margin < message.data < hall(FROM_THE_STOP) - margin for message in sensed)
 
 
-def before_and_after(tmp_path, measured, model, setpoints, *tuned):
-    """What is `measured` of the loop without and with what was `tuned`."""
+def before_and_after(tmp_path, measured, *given, tuned):
+    """What is `measured` of a loop that is `given`, without and with what was `tuned`."""
     from support.ros_graph import Graph
 
     found = []
-    for given in ((), tuned):
+    for more in ((), tuned):
         # a domain for each: nobody is left from the run before
         with Graph(free_domain(), tmp_path) as graph:
-            found.append(measured(graph, model, setpoints, *given))
+            found.append(measured(graph, *given, *more))
     return found
 
 
@@ -83,10 +87,7 @@ def before_and_after(tmp_path, measured, model, setpoints, *tuned):
 def test_a_schedule_is_better_on_the_plant_whose_friction_grows_with_the_load(tmp_path):
     """Nothing late, so the file schedules the load: the step no longer waits for the integrator."""
     model, controller = tuned(RUBBING, tmp_path)
-    setpoints = tmp_path / "setpoints.csv"
-    # late: a test that hears the plant only after a while hears the whole step
-    setpoints.write_text(f"time,setpoint\n0,0\n0.8,{FROM_THE_STOP}\n")
-    before, after = before_and_after(tmp_path, on_the_way, model, setpoints, controller)
+    before, after = before_and_after(tmp_path, on_the_way, model, tuned=(controller,))
     assert 0 < after < 0.75 * before
 
 
@@ -95,7 +96,7 @@ def test_the_tuned_file_is_better_on_the_plant_that_has_the_effect(tmp_path):
     model, controller = tuned(LAGGING, tmp_path)
     setpoints = tmp_path / "setpoints.csv"
     setpoints.write_text(f"time,setpoint\n0,{START}\n0.5,{TARGET}\n")
-    before, after = before_and_after(tmp_path, overshoot, model, setpoints, "--params-file", str(controller))
+    before, after = before_and_after(tmp_path, overshoot, model, setpoints, tuned=("--params-file", str(controller)))
     assert before > 0.05
     assert after < 0.02
 

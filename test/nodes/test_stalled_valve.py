@@ -90,6 +90,7 @@ def test_a_controller_takes_back_the_duty_of_a_jammed_valve(graph):
     stall = Stall(graph)
     jammed = ("coulomb_friction:=5.0", "thermal_time_constant:=0.0", "hall_voltage_noise:=0.02")
     graph.start("plant", "lockstep:=true", "time_factor:=0.0", f"rate:={RATE}", "command_timeout:=0", *jammed)
+    graph.until_connected()  # or the first large duty is missed, and all that follows seems early
     graph.start("controller", "use_sim_time:=true", "hall_timeout:=0", "setpoint:=1.0")
     stall.end()
     check(stall, "controller", late=0.3, spread=0.2)
