@@ -13,6 +13,9 @@ one, and no motor more than the least common multiple of its poles and slots."""
 FINEST = 50_000.0
 """Most periods in one turn of the output. Chosen: a motor of 50 periods behind a gear of 1000 to 1, more than is made;
 at no-load speed the simulator has eight steps for each."""
+PLAUSIBLE = 12
+"""Most periods per motor revolution that are plausible. Chosen: small motors have up to 12 poles and slots to a period's
+common multiple."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
 
@@ -23,8 +26,8 @@ def _turns(missing: Missing) -> Sequence[float]:
 
 
 def _whole_turns(missing: Missing) -> Sequence[float]:
-    """The same as whole numbers: a motor has a whole number of teeth."""
-    return [float(round(rhythm)) for rhythm in _turns(missing)]
+    """The same as whole numbers, for a motor has a whole number of teeth; then all that are plausible."""
+    return [*(float(round(rhythm)) for rhythm in _turns(missing)), *map(float, range(1, PLAUSIBLE + 1))]
 
 
 def _starts(missing: Missing) -> Sequence[Start]:
@@ -75,7 +78,7 @@ EFFECT = Effect(
             "1",
             0.0,
             1000.0,
-            plausible=(1.0, 12.0),
+            plausible=(1.0, float(PLAUSIBLE)),
             # a motor has a whole number of teeth
             searched=TURNS,
             geared=FINEST,

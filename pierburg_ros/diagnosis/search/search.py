@@ -13,12 +13,11 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.race import winners
-from pierburg_ros.diagnosis.search.ripple import ripples, through_stretches
+from pierburg_ros.diagnosis.search.ripple import between_rests, ripples
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.diagnosis.search.supported import Beside, supported
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, quantities, without
@@ -147,13 +146,14 @@ class Search:
             if accounts_for_all(best, self.data):
                 return
             seeds = self._seeds(best)
-            self._fit_ripples(seeds)
             if self.resigned:
                 return
         for seed in seeds:
             if self._complete(size + 1) or self.exhausted:
                 return
             self.expand(seed)
+            if not self._complete(size + 1):
+                self._fit_ripples(seeds)
             if self._wants_refinement(best, size + 1):
                 self.refine(self.of_size(size + 1))
 
@@ -162,8 +162,8 @@ class Search:
         leading = self.best_of_size(size)
         if leading is None or complete(leading):
             return
-        if any(EFFECT[effect].ripple for effect in leading.explanation.effects):
-            self._fit_ripples(seeds)
+        self._fit_ripples(seeds)
+        leading = self.best_of_size(size) or leading
         if jumps(leading.explanation) and not self._complete(size):
             self.refine(self.of_size(size))
 
@@ -268,10 +268,10 @@ class Search:
         for variant, ripple in ripples(self.whole):
             if self._complete(size):
                 return
-            self.progress(f"{variant.label}, through stretches")
+            self.progress(f"{variant.label}, between rests")
             grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
             bases = {explanation: seed for explanation, seed in grown if explanation is not None}
-            fits = through_stretches(self.whole, variant, ripple, bases, self.pool)
+            fits = between_rests(self.whole, variant, ripple, bases, self.pool)
             kept = [self.keep(fit) for fit in fits]
             if not self._complete(size):
                 self.refine(kept)
