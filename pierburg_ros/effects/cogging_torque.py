@@ -14,8 +14,8 @@ FINEST = 50_000.0
 """Most periods in one turn of the output. Chosen: a motor of 50 periods behind a gear of 1000 to 1, more than is made;
 at no-load speed the simulator has eight steps for each."""
 PLAUSIBLE = 12
-"""Most periods per motor revolution that are plausible. Chosen: small motors have up to 12 poles and slots to a period's
-common multiple."""
+"""Most periods per motor revolution that are plausible. Chosen: the least common multiple of the poles and slots of a
+small brush motor is rarely more; what a recording shows clearly is looked at beyond it."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
 

@@ -158,12 +158,14 @@ class Search:
                 self.refine(self.of_size(size + 1))
 
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
-        """Descend again to what leads among explanations of a `size`, if its cost has many local minima."""
+        """Descend again to what leads among explanations of a `size`, if its cost has many local minima.
+
+        Ripples come first, for they are found in less time than a minimum among many.
+        """
         leading = self.best_of_size(size)
         if leading is None or complete(leading):
             return
         self._fit_ripples(seeds)
-        leading = self.best_of_size(size) or leading
         if jumps(leading.explanation) and not self._complete(size):
             self.refine(self.of_size(size))
 
@@ -272,9 +274,9 @@ class Search:
             grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
             bases = {explanation: seed for explanation, seed in grown if explanation is not None}
             fits = between_rests(self.whole, variant, ripple, bases, self.pool)
-            kept = [self.keep(fit) for fit in fits]
-            if not self._complete(size):
-                self.refine(kept)
+            for fit in map(self.keep, fits):
+                if fit.ratio < NEARLY and not self._complete(size):
+                    self._refine_alone(fit)
 
     def expand(self, seed: Fit) -> list[Fit]:
         """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""

@@ -1,6 +1,6 @@
 """How a search grows explanations: it finds pairs, keeps to its beam, and ends when its budget is spent."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -82,7 +82,7 @@ class Grown(Search):
         super().__init__(data, NOMINAL, pool, beam=beam)
         self.ratios = ratios
         self.seeds: list[Explanation] = []
-        self.before_ripples: list[Explanation] = []
+        self.before_ripples: dict[int, list[Explanation]] = {}
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
         return self.keep(made_up(explanation, self.ratios.get(explanation, 9.0), NOMINAL))
@@ -105,8 +105,8 @@ class Grown(Search):
     def _fit_most_promising(self, seeds: object) -> None:
         pass
 
-    def _fit_ripples(self, seeds: object) -> None:
-        self.before_ripples = self.before_ripples or [*self.seeds]
+    def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
+        self.before_ripples.setdefault(seeds[0].explanation.size + 1, [*self.seeds])
 
     def _likeliest_accounts_for_all(self) -> bool:
         self.resigned = self.beam.resigns
@@ -135,7 +135,6 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
     found = Grown(short, pool, ratios, Beam(width=1, depth=2))
     found.run()
     assert [seed for seed in found.seeds if seed.size == 1] == [*drifts, ONES[0]]
-    assert found.before_ripples == [NOTHING, *drifts]
 
 
 @pytest.mark.parametrize(("left", "second"), [(14.0, PAIRS[0]), (16.0, ONES[0]), (4.0, ONES[0])])
@@ -154,20 +153,29 @@ def test_what_leads_by_far_is_grown_before_others_of_its_size(
     assert found.seeds[:2] == [NOTHING, second]
 
 
-@pytest.mark.parametrize(("effect", "grown"), [("cogging_torque", [NOTHING]), ("sensor_lag", [NOTHING, FRICTION])])
-def test_ripples_are_looked_for_at_once_where_one_leads(
-    short: Data, pool: Executor, effect: str, grown: list[Explanation]
-) -> None:
-    """Otherwise drifts are grown before."""
-    pair = Explanation(("spring_preload",), (Variant(effect, ("x",)),))
+def test_ripples_are_looked_for_before_drifts_are_grown(short: Data, pool: Executor) -> None:
+    """And before pairs, alone: beside nothing they are found in a second or two."""
 
     class Leading(Grown):
         def _fit_most_promising(self, seeds: object) -> None:
-            self.add(pair)
+            self.add(PAIRS[0])
 
-    found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, pair: 4.0}, Beam(depth=2))
+    found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, PAIRS[0]: 4.0}, Beam(depth=2))
     found.run()
-    assert found.before_ripples == grown
+    assert found.before_ripples == {1: [NOTHING], 2: [NOTHING]}
+    assert FRICTION in found.seeds
+
+
+@pytest.mark.parametrize(("ratio", "refined"), [(4.0, True), (6.0, False), (0.99, False)])
+def test_a_ripple_is_refined_where_it_comes_near(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, ratio: float, refined: bool
+) -> None:
+    found, again = made_up(ONES[0], ratio, NOMINAL), list[Fit]()
+    monkeypatch.setattr(module, "ripples", lambda _: [(ONES[0].variants[0], None)])
+    monkeypatch.setattr(module, "between_rests", lambda *_: [found])
+    monkeypatch.setattr(empty, "_refine_alone", again.append)
+    empty._fit_ripples([empty.keep(made_up(NOTHING, 9.0, NOMINAL))])
+    assert again == ([found] if refined else [])
 
 
 def test_what_does_not_account_for_all_ends_no_growth_of_what_is_smaller(short: Data, pool: Executor) -> None:
