@@ -10,7 +10,7 @@ from typing import Literal
 from pierburg_ros.audit import audit
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned, said_of
-from pierburg_ros.diagnosis.disturbance.apart import apart, nominal_elsewhere
+from pierburg_ros.diagnosis.disturbance.apart import apart, bridge_for_load, nominal_elsewhere
 from pierburg_ros.diagnosis.disturbance.rounding import rounded
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
@@ -90,6 +90,26 @@ def diagnose(
 
 
 def examined(
+    data: Data,
+    nominal: Model,
+    recordings: Sequence[Recording],
+    progress: Progress,
+    jobs: int | None,
+    deadline: Deadline,
+) -> tuple[Found, Remainder | None]:
+    """What is found, and what can be said of the rest, if any.
+
+    A load that came and went is held against a bridge that was open meanwhile.
+    """
+    found, rest = looked_at(data, nominal, recordings, progress, jobs, deadline)
+    powered = deadline.attempt(partial(bridge_for_load, found, recordings), None)
+    if powered is None:
+        return found, rest
+    again, rest_again = looked_at(powered, nominal, recordings, progress, jobs, deadline)
+    return (again, rest_again) if verdict_on(again.chosen) != "unexplained" else (found, rest)
+
+
+def looked_at(
     data: Data,
     nominal: Model,
     recordings: Sequence[Recording],

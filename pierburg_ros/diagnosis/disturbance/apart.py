@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.disturbance.bridge import opened
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
@@ -17,13 +18,15 @@ from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.workers import workers
 
 BESIDE = 4
@@ -46,8 +49,8 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
     """
     if found.data.in_stretches:
         return found
-    fits = _promising(found)
     with workers(jobs, deadline) as pool:
+        fits = _promising(found, pool)
         for way in (_without_stretches, _beside_slow_quantities):
             for tried, beam in way(found, fits, recording, pool, progress):
                 again = search(tried, found.nominal, progress, jobs, beam, deadline)
@@ -56,16 +59,27 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
     return found
 
 
-def _promising(found: Found) -> list[Fit]:
-    """The nominal model, the best pair, and the best single quantities, errors that are large not counting for more."""
+def _promising(found: Found, pool: Executor) -> list[Fit]:
+    """The nominal model, the best pair, and the best single quantities, all fitted so that large errors count no more.
+
+    Otherwise what disturbs a recording bends the very fit that tells all the rest.
+    """
+    estimator = found.estimator
 
     def cost(fit: Fit) -> float:
         return float(np.mean(np.square(forgiven(fit.solution.residual))))
 
-    singles, pairs = (
-        sorted((fit for fit in found.of_size(size) if fit.explanation.changed is None), key=cost) for size in (1, 2)
-    )
-    return [found.fits[Explanation()], *pairs[:1], *singles][:BESIDE]
+    def best(size: int) -> list[Fit]:
+        fits = sorted((fit for fit in found.of_size(size) if fit.explanation.changed is None), key=cost)
+        return sorted(pool.map(partial(_robust, estimator), fits[: 1 if size > 1 else None]), key=cost)
+
+    return [found.fits[Explanation()], *best(2), *best(1)][:BESIDE]
+
+
+def _robust(estimator: Estimator, fit: Fit) -> Fit:
+    """The explanation of `fit` fitted so that large errors count no more."""
+    robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
+    return estimator.restated(robust)
 
 
 def _without_stretches(
@@ -73,12 +87,13 @@ def _without_stretches(
 ) -> Iterator[Attempt]:
     """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere.
 
-    Where none does, the first of them once more, for what a single quantity explains that the stretch has hidden.
+    First where nothing has to be left out, for the bridge was open. Where none does, the first of them once more, for
+    what a single quantity explains that the stretch has hidden.
     """
     estimator, others = Estimator(found.data, found.nominal), list[Data]()
     progress("what has been tried, but for one stretch")
     told = pool.map(lambda fit: without_stretch(found.data, estimator, fit, recording), fits)
-    for rest, left in filter(None, told):
+    for rest, left in sorted(filter(None, told), key=lambda each: len(each[0].left_out)):
         if left.ratio <= EXPLAINED:
             yield rest, None
         else:
@@ -116,7 +131,8 @@ def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Sl
 def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Data | None:
     """A single recording without the one stretch that the nominal model fails in, if that leaves nothing elsewhere.
 
-    None where it does, and where an actuator is simulated in stretches.
+    None where it does, and where an actuator is simulated in stretches. Nothing is left out where the bridge was open
+    in that stretch.
     """
     if len(recordings) > 1 or data.in_stretches:
         return None
@@ -128,17 +144,60 @@ def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording
 def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> tuple[Data, Fit] | None:
     """The recording without the one stretch that holds nearly all errors of an explanation, None where they are spread.
 
-    With it the explanation fitted again.
+    Or with the bridge open meanwhile, where that leaves nothing. With it the explanation fitted again.
     """
-    robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
+    robust = _robust(estimator, fit)
     span = confined(data, data.residual(robust.model))
     if span is None:
         return None
+    if told := with_open_bridge(data, estimator, robust, recording, span):
+        return told
     omission = Omission(0, span, NOTHING)
     rest = in_parts(data_of([recording], estimator.nominal, (omission,)))
     left = Estimator(rest, estimator.nominal).fit(fit.explanation, robust.values, BRIEF)
     remark = f"{recording.name}: from {span[0]:.3g} to {span[1]:.3g} s {NOTHING}; it is left out."
     return _said(rest, data, remark, disturbed=False), left
+
+
+def with_open_bridge(
+    data: Data, estimator: Estimator, fit: Fit, recording: Recording, span: Span
+) -> tuple[Data, Fit] | None:
+    """The recording with the bridge open for a while, where that is all that an explanation lacks in a `span` [s].
+
+    With it the explanation fitted again. None where it lacks more, or where the state of the bridge was logged.
+    """
+    bridge = opened(data, fit.model, span) if recording.enabled is None else None
+    if bridge is None:
+        return None
+    rest = in_parts(data_of([bridge.known(recording)], estimator.nominal))
+    left = Estimator(rest, estimator.nominal).fit(fit.explanation, fit.values, BRIEF)
+    remark = f"{recording.name}: {bridge.remark}"
+    return (_said(rest, data, remark, disturbed=False), left) if adequate(left) else None
+
+
+def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> Data | None:
+    """A single recording with the bridge open, where that does what a load does that came and went.
+
+    It has two quantities, and the load three. None where no such load was found or more is left.
+    """
+    load = next(filter(_passing, found.chosen.explanation.variants), None)
+    if load is None or len(recordings) > 1 or found.data.in_stretches:
+        return None
+    rest, estimator, values = without(found.chosen.explanation, load), found.estimator, found.chosen.values
+    start, end = (values[name] for name in _moments(load))
+    told = with_open_bridge(found.data, estimator, estimator.at(rest, values), recordings[0], (start, end))
+    return told[0] if told else None
+
+
+def _passing(variant: Variant) -> bool:
+    """Whether an effect begins and ends, each at a moment that is searched."""
+    return len(_moments(variant)) == 2
+
+
+def _moments(variant: Variant) -> list[str]:
+    """Dotted names of the moments of an effect that are searched, in their order."""
+    parameters = EFFECT[variant.effect].parameters
+    return [f"{variant.effect}.{each.name}" for each in parameters if each.moment and each.name in variant.free]
 
 
 def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:

@@ -6,13 +6,22 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.disturbance.apart import NOTHING, nominal_elsewhere, slow_quantities, without_stretch
+from pierburg_ros.diagnosis.disturbance.apart import (
+    NOTHING,
+    bridge_for_load,
+    nominal_elsewhere,
+    slow_quantities,
+    with_open_bridge,
+    without_stretch,
+)
 from pierburg_ros.diagnosis.disturbance.course import Course
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import Wandered, wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
+from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.plant import simulate
@@ -22,10 +31,10 @@ ONE = recording({})
 NOISES = NOISE * np.random.default_rng(5).standard_normal(ONE.time.size)
 
 
-def driven(**inputs):
-    """ONE as the nominal valve makes it under other inputs."""
+def driven(model=NOMINAL, **inputs):
+    """ONE as a valve makes it under other inputs."""
     given = replace(inputs_of(ONE), **inputs)
-    return replace(ONE, measured=simulate(NOMINAL, given, ONE.time) + NOISES)
+    return replace(ONE, measured=simulate(model, given, ONE.time) + NOISES)
 
 
 def fitted_to(given):
@@ -39,9 +48,27 @@ def held(values):
     return np.interp(inputs_of(ONE).time, ONE.time, values)
 
 
-def test_seconds_of_an_open_bridge_are_left_out():
+def held_by_a_hand():
+    """ONE as the nominal valve makes it while something pulls to and fro on it for three seconds."""
+    hand = NOMINAL.with_values(
+        {
+            "external_load.amplitude": 0.2,
+            "external_load.frequency": 0.8,
+            "external_load.start": 9.0,
+            "external_load.end": 12.0,
+        }
+    )
+    return replace(ONE, measured=simulate(hand, inputs_of(ONE), ONE.time) + NOISES)
+
+
+def with_the_bridge_open(model=NOMINAL):
+    """ONE as a valve makes it whose bridge is open for three seconds."""
     time = inputs_of(ONE).time
-    given = driven(enabled=(time < 9.0) | (time >= 12.0))
+    return driven(model, enabled=(time < 9.0) | (time >= 12.0))
+
+
+def test_seconds_of_a_hand_are_left_out():
+    given = held_by_a_hand()
     data, estimator, fit = fitted_to(given)
     assert fit.ratio > 10.0
     rest, left = without_stretch(data, estimator, fit, given)
@@ -50,6 +77,37 @@ def test_seconds_of_an_open_bridge_are_left_out():
     assert omission.why == NOTHING and 8.0 < start < 9.5 and 11.5 < end < 14.5
     assert left.ratio < EXPLAINED
     assert len(rest.runs) == 2 and not any(np.any((r.time > start) & (r.time < end)) for r in rest.runs)
+
+
+def test_an_open_bridge_is_simulated_as_one():
+    given = with_the_bridge_open()
+    data, estimator, fit = fitted_to(given)
+    rest, left = without_stretch(data, estimator, fit, given)
+    assert not rest.left_out and "bridge seems to have been open" in rest.remarks[-1]
+    assert left.ratio < EXPLAINED < 0.1 * fit.ratio
+    # a bridge whose state was logged is no question
+    logged = replace(given, enabled=Channel(np.array([0.0]), np.array([1.0])))
+    told = without_stretch(data_on(logged), estimator, fit, logged)
+    assert told is None or told[0].left_out
+
+
+def test_a_load_that_came_and_went_gives_way_to_an_open_bridge():
+    given = with_the_bridge_open(NOMINAL.with_values({"spring_stiffness": 0.3}))
+    found = search(data_on(given), NOMINAL, jobs=1, beam=Beam(depth=0))
+    load = Variant("external_load", ("torque", "start", "end"))
+    values = {"external_load.torque": 0.2, "external_load.start": 9.0, "external_load.end": 12.0}
+    drifted = found.estimator.fit(Explanation(("spring_stiffness",)), forgiving=True)
+    fit = found.estimator.at(Explanation(("spring_stiffness",), (load,)), {**drifted.values, **values})
+    powered = bridge_for_load(replace(found, chosen=fit), [given])
+    assert Estimator(powered, NOMINAL).fit(Explanation(("spring_stiffness",)), drifted.values).ratio < EXPLAINED
+    assert bridge_for_load(replace(found, chosen=drifted), [given]) is None
+    assert bridge_for_load(replace(found, chosen=fit), [given, given]) is None
+
+
+def test_a_hand_is_no_open_bridge():
+    given = held_by_a_hand()
+    data, estimator, fit = fitted_to(given)
+    assert with_open_bridge(data, estimator, fit, given, (9.0, 12.0)) is None
 
 
 @pytest.mark.parametrize(
@@ -143,8 +201,7 @@ def test_a_stretch_with_most_of_the_motion_is_not_left_out():
 
 
 def test_where_the_nominal_model_explains_the_rest_one_stretch_is_left_out_at_once():
-    time = inputs_of(ONE).time
-    given = driven(enabled=(time < 9.0) | (time >= 12.0))
+    given = held_by_a_hand()
     data, _, _ = fitted_to(given)
     assert nominal_elsewhere(data, NOMINAL, [given]).left_out[0].why == NOTHING
     assert nominal_elsewhere(data, NOMINAL, [given, given]) is None
