@@ -11,6 +11,7 @@ import numpy as np
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.disturbance.bridge import opened
+from pierburg_ros.diagnosis.disturbance.clock import other_clock
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
@@ -51,7 +52,7 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
         return found
     with workers(jobs, deadline) as pool:
         fits = _promising(found, pool)
-        for way in (_without_stretches, _beside_slow_quantities):
+        for way in (_by_another_clock, _without_stretches, _beside_slow_quantities):
             for tried, beam in way(found, fits, recording, pool, progress):
                 again = search(tried, found.nominal, progress, jobs, beam, deadline)
                 if adequate(again.chosen):
@@ -80,6 +81,25 @@ def _robust(estimator: Estimator, fit: Fit) -> Fit:
     """The explanation of `fit` fitted so that large errors count no more."""
     robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
     return estimator.restated(robust)
+
+
+def _by_another_clock(
+    found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
+) -> Iterator[Attempt]:
+    """The recording with its input moved to when it acted, if that is all that an explanation lacks."""
+    estimator = found.estimator
+    progress(f"what has been tried, with the {recording.input} by another clock")
+    told = pool.map(lambda fit: with_other_clock(found.data, estimator, fit, recording), fits)
+    yield from ((rest, None) for rest in told if rest)
+
+
+def with_other_clock(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Data | None:
+    """The recording with its input moved to when it acted; None where an explanation lacks more, or it is a delay."""
+    clock = other_clock(data, fit.model)
+    if clock is None:
+        return None
+    told = _known(data, estimator, fit, clock.known(recording), clock.remark(recording.input))
+    return told[0] if told else None
 
 
 def _without_stretches(
@@ -169,10 +189,14 @@ def with_open_bridge(
     bridge = opened(data, fit.model, span) if recording.enabled is None else None
     if bridge is None:
         return None
-    rest = in_parts(data_of([bridge.known(recording)], estimator.nominal))
+    return _known(data, estimator, fit, bridge.known(recording), bridge.remark)
+
+
+def _known(data: Data, estimator: Estimator, fit: Fit, known: Recording, remark: str) -> tuple[Data, Fit] | None:
+    """A recording with what has disturbed it `known`, and an explanation fitted again; None where that leaves more."""
+    rest = in_parts(data_of([known], estimator.nominal))
     left = Estimator(rest, estimator.nominal).fit(fit.explanation, fit.values, BRIEF)
-    remark = f"{recording.name}: {bridge.remark}"
-    return (_said(rest, data, remark, disturbed=False), left) if adequate(left) else None
+    return (_said(rest, data, f"{known.name}: {remark}", disturbed=False), left) if adequate(left) else None
 
 
 def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> Data | None:
