@@ -53,8 +53,7 @@ class Supply:
     def simulated(self, run: Run, course: Course) -> Simulated:
         """See `Slow`."""
         given = run.inputs
-        fine = np.arange(run.time[0], run.time[-1], FINE * self.own_time)
-        time = np.unique(np.concatenate([given.time, fine]))
+        time = self._moments(run.time, given.time)
         place = np.maximum(np.searchsorted(given.time, time, side="right") - 1, 0)
         enabled = None if given.enabled is None else given.enabled[place]
         basis = course.basis(time)
@@ -68,9 +67,14 @@ class Supply:
 
     def known(self, recording: Recording, course: Course, values: Signal) -> Recording:
         """See `Slow`."""
-        time = np.arange(recording.time[0], recording.time[-1], FINE * self.own_time)
+        time = self._moments(recording.time, recording.command.time)
         supply = self.voltage * np.exp(course.basis(time) @ values)
         return replace(recording, supply_voltage=Channel(time, supply))
+
+    def _moments(self, samples: Signal, changes: Signal) -> Signal:
+        """When it may have another value: wherever the input changes, and so often that it hardly moves between [s]."""
+        fine = np.arange(samples[0], samples[-1], FINE * self.own_time)
+        return np.unique(np.concatenate([changes, fine]))
 
     def remark(self, course: Course, values: Signal) -> str:
         """See `Slow`."""
