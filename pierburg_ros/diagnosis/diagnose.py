@@ -75,7 +75,11 @@ def diagnose(
     data = said_of(each_cleaned, evidence(recordings, nominal))
     data = simulator.kept_apart(data) if simulator else data
     deadline = Deadline(budget)
-    found, rest = examined(data, nominal, recordings, progress, jobs, deadline)
+    look = partial(examined, nominal=nominal, progress=progress, jobs=jobs, deadline=deadline)
+    found, rest = look(data, recordings=recordings)
+    if opened := deadline.attempt(partial(bridge_for_load, found, recordings), None):
+        again = look(opened[0], recordings=opened[1:])
+        found, rest = again if verdict_on(again[0].chosen) != "unexplained" else (found, rest)
     conclusion = conclude(found, rest)
     if found.data.disturbed:
         conclusion = replace(conclusion, verdict="unexplained")
@@ -90,26 +94,6 @@ def diagnose(
 
 
 def examined(
-    data: Data,
-    nominal: Model,
-    recordings: Sequence[Recording],
-    progress: Progress,
-    jobs: int | None,
-    deadline: Deadline,
-) -> tuple[Found, Remainder | None]:
-    """What is found, and what can be said of the rest, if any.
-
-    A load that came and went is held against a bridge that was open meanwhile.
-    """
-    found, rest = looked_at(data, nominal, recordings, progress, jobs, deadline)
-    powered = deadline.attempt(partial(bridge_for_load, found, recordings), None)
-    if powered is None:
-        return found, rest
-    again, rest_again = looked_at(powered, nominal, recordings, progress, jobs, deadline)
-    return (again, rest_again) if verdict_on(again.chosen) != "unexplained" else (found, rest)
-
-
-def looked_at(
     data: Data,
     nominal: Model,
     recordings: Sequence[Recording],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -145,7 +145,11 @@ class Data:
 
     def cut(self, duration: float) -> Data:
         """The first `duration` [s] of each run."""
-        return replace(self, runs=tuple(run.cut(duration) for run in self.runs))
+        return self.changed(lambda run: run.cut(duration))
+
+    def changed(self, run_of: Callable[[Run], Run]) -> Data:
+        """The same with each run replaced by what `run_of` makes of it."""
+        return replace(self, runs=tuple(map(run_of, self.runs)))
 
     def only(self, number: int) -> Data:
         """The recording of a `number`."""

@@ -57,6 +57,14 @@ class Inputs:
         if time.size == 0 or not np.all(np.isfinite(time)) or not np.all(np.diff(time) > 0):
             raise InputError("The input times are empty or do not increase; expected increasing times. Sort them.")
 
+    def at(self, time: Signal) -> Inputs:
+        """The same told at each `time` [s], increasing, shape (times,): what is in force then, 0 for no command yet."""
+        place = np.searchsorted(self.time, time, side="right") - 1
+        row = np.maximum(place, 0)
+        supply = None if self.supply_voltage is None else self.supply_voltage[row]
+        enabled = None if self.enabled is None else self.enabled[row]
+        return Inputs(time, np.where(place < 0, 0.0, self.command[row]), supply, enabled)
+
     def held_before(self) -> Inputs:
         """The same, but for a first row that has been in force long before."""
         return replace(self, time=np.concatenate([self.time[:1] - LONG_BEFORE, self.time[1:]]))

@@ -40,6 +40,15 @@ def test_duty_is_zero_before_its_first_row() -> None:
     assert np.ptp(voltage[time <= 0.5]) == 0.0 and voltage[-1] > 0.5
 
 
+def test_inputs_told_at_more_moments_drive_alike() -> None:
+    given = Inputs(np.array([0.2, 0.5]), np.array([0.3, 0.1]), np.array([13.0, 12.0]), np.array([True, False]))
+    told = given.at(np.array([0.1, 0.2, 0.3, 0.5, 0.7]))
+    assert told.command.tolist() == [0.0, 0.3, 0.3, 0.1, 0.1]
+    assert told.supply_voltage is not None and told.supply_voltage.tolist() == [13.0, 13.0, 13.0, 12.0, 12.0]
+    time = np.arange(0.0, 1.0, 0.01)
+    assert np.allclose(simulate(NOMINAL, told, time), simulate(NOMINAL, given, time), atol=1e-6)
+
+
 def test_rows_before_the_first_sample_are_in_force() -> None:
     time = np.arange(10.0, 11.0, 0.01)
     early = simulate(NOMINAL, Inputs(np.array([3.0, 9.0]), np.array([0.1, 0.3])), time)

@@ -79,8 +79,7 @@ def _promising(found: Found, pool: Executor) -> list[Fit]:
 
 def _robust(estimator: Estimator, fit: Fit) -> Fit:
     """The explanation of `fit` fitted so that large errors count no more."""
-    robust = estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True) if fit.explanation.size else fit
-    return estimator.restated(robust)
+    return estimator.restated(estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True))
 
 
 def _by_another_clock(
@@ -164,17 +163,17 @@ def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording
 def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> tuple[Data, Fit] | None:
     """The recording without the one stretch that holds nearly all errors of an explanation, None where they are spread.
 
-    Or with the bridge open meanwhile, where that leaves nothing. With it the explanation fitted again.
+    Or with the bridge open meanwhile, where that leaves nothing. With it the explanation fitted again; that of `fit`
+    counts large errors no more.
     """
-    robust = _robust(estimator, fit)
-    span = confined(data, data.residual(robust.model))
+    span = confined(data, data.residual(fit.model))
     if span is None:
         return None
-    if told := with_open_bridge(data, estimator, robust, recording, span):
+    if told := with_open_bridge(data, estimator, fit, recording, span):
         return told
     omission = Omission(0, span, NOTHING)
     rest = in_parts(data_of([recording], estimator.nominal, (omission,)))
-    left = Estimator(rest, estimator.nominal).fit(fit.explanation, robust.values, BRIEF)
+    left = Estimator(rest, estimator.nominal).fit(fit.explanation, fit.values, BRIEF)
     remark = f"{recording.name}: from {span[0]:.3g} to {span[1]:.3g} s {NOTHING}; it is left out."
     return _said(rest, data, remark, disturbed=False), left
 
@@ -186,7 +185,7 @@ def with_open_bridge(
 
     With it the explanation fitted again. None where it lacks more, or where the state of the bridge was logged.
     """
-    bridge = opened(data, fit.model, span) if recording.enabled is None else None
+    bridge = opened(data, fit.model, span)
     if bridge is None:
         return None
     return _known(data, estimator, fit, bridge.known(recording), bridge.remark)
@@ -199,18 +198,24 @@ def _known(data: Data, estimator: Estimator, fit: Fit, known: Recording, remark:
     return (_said(rest, data, f"{known.name}: {remark}", disturbed=False), left) if adequate(left) else None
 
 
-def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> Data | None:
+def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> tuple[Data, Recording] | None:
     """A single recording with the bridge open, where that does what a load does that came and went.
 
-    It has two quantities, and the load three. None where no such load was found or more is left.
+    As evidence, and as if that had been logged. It has two quantities, and the load three. None where no such load was
+    found or more is left.
     """
     load = next(filter(_passing, found.chosen.explanation.variants), None)
     if load is None or len(recordings) > 1 or found.data.in_stretches:
         return None
     rest, estimator, values = without(found.chosen.explanation, load), found.estimator, found.chosen.values
     start, end = (values[name] for name in _moments(load))
-    told = with_open_bridge(found.data, estimator, estimator.at(rest, values), recordings[0], (start, end))
-    return told[0] if told else None
+    fit = estimator.at(rest, values)
+    bridge = opened(found.data, fit.model, (start, end))
+    if bridge is None:
+        return None
+    known = bridge.known(recordings[0])
+    told = _known(found.data, estimator, fit, known, bridge.remark)
+    return (told[0], known) if told else None
 
 
 def _passing(variant: Variant) -> bool:

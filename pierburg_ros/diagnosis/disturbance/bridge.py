@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.disturbance.moments import exact, squared_error
 from pierburg_ros.diagnosis.disturbance.window import BLOCK, LONGEST
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import forgiven
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
@@ -18,11 +18,6 @@ from pierburg_ros.recording.loss import Span
 FINE = 0.25
 """Distance of the moments that are tried first, in blocks. Work: 60 ms for the valve, some 300 simulations of a minute;
 the six bridges that were open were found from there."""
-EXACT = 1e-3
-"""How exactly the two moments are told, in the actuator's own time. Derived: 0.1 ms for the valve, whose shaft moves by
-a thousandth of its travel in that time, less than usual noise."""
-TRIALS = 200
-"""Simulations in which the two moments are made exact. Work: the six took 43 to 128; not varied."""
 SOON = 4.0
 """Blocks of a stretch by which the moment is told from which on the bridge was open. Chosen: a second for the valve,
 ten times what its spring takes to move it; not varied."""
@@ -41,15 +36,9 @@ class OpenBridge:
 
     def applied(self, run: Run) -> Run:
         """`run` with the bridge open meanwhile."""
-        given = run.inputs
-        time = np.unique(np.concatenate([given.time, [self.start, self.end]]))
-        place = np.searchsorted(given.time, time, side="right") - 1
-        before = place < 0
-        place = np.maximum(place, 0)
-        supply = None if given.supply_voltage is None else given.supply_voltage[place]
-        command = np.where(before, 0.0, given.command[place])
+        time = np.unique(np.concatenate([run.inputs.time, [self.start, self.end]]))
         enabled = (time < self.start) | (time >= self.end)
-        return replace(run, inputs=replace(given, time=time, command=command, supply_voltage=supply, enabled=enabled))
+        return replace(run, inputs=replace(run.inputs.at(time), enabled=enabled))
 
     def known(self, recording: Recording) -> Recording:
         """`recording` as if that had been logged."""
@@ -66,12 +55,14 @@ class OpenBridge:
 
 
 def opened(data: Data, model: Model, span: Span) -> OpenBridge | None:
-    """From when to when the bridge was open, if that is why `model` fails in a `span` [s] of a recording; None if not.
+    """From when to when the bridge was open, if that is why `model` fails in a `span` [s] of a recording.
 
-    For at least a block: less is a nudge, which stands for any slip that came at another moment. First the moment at
-    which it opens is sought, by the errors soon after; then the one at which it closes, by all errors of the stretch;
-    then both are made exact. Large errors count no more.
+    None if not, or where its state was logged. For at least a block: less is a nudge, which stands for any slip that
+    came at another moment. First the moment at which it opens is sought, by the errors soon after; then the one at
+    which it closes, by all errors of the stretch; then both are made exact. Large errors count no more.
     """
+    if any(run.inputs.enabled is not None for run in data.runs):
+        return None
     block, step = BLOCK * data.scales.time, FINE * BLOCK * data.scales.time
     first, last = float(data.runs[0].time[0]), float(data.runs[-1].time[-1])
     longest = LONGEST * (last - first)
@@ -79,25 +70,18 @@ def opened(data: Data, model: Model, span: Span) -> OpenBridge | None:
     time = np.concatenate([run.time for run in data.runs])
 
     def cost(start: float, end: float, until: float = highest) -> float:
-        bridge, seen = OpenBridge(start, end), (time >= lowest) & (time <= until)
-        left = replace(data, runs=tuple(bridge.applied(run) for run in data.runs)).residual(model)
-        return float(np.sum(np.square(forgiven(left)[seen])))
+        error = squared_error(data, model, OpenBridge(start, end).applied)
+        return float(np.sum(error[(time >= lowest) & (time <= until)]))
+
+    def possible(moments: Signal) -> float:
+        start, end = map(float, moments)
+        return cost(start, end) if first <= start <= end - block else np.inf
 
     # a shaft that rests shows the open bridge late
     about = span[0] + SOON * block
     starts = [*np.arange(span[0] - block, lowest, -block), *np.arange(span[0] - block, about, step)]
     start = min(starts, key=lambda start: cost(start, last, about))
     end = min(np.arange(start + block, start + longest, step), key=lambda end: cost(start, end))
-    untouched = cost(start, start)
-    found = minimize(
-        lambda moments: cost(*moments) if first <= moments[0] <= moments[1] - block else np.inf,
-        (start, end),
-        method="Nelder-Mead",
-        options={
-            "initial_simplex": [(start, end), (start + step, end), (start, end + step)],
-            "xatol": EXACT * data.scales.time,
-            "fatol": 1.0,
-            "maxfev": TRIALS,
-        },
-    )
-    return OpenBridge(*map(float, found.x)) if found.fun <= LEFT * untouched else None
+    untouched = cost(lowest, lowest)
+    (start, end), left = exact(possible, np.array([start, end]), step, data.scales.time)
+    return OpenBridge(float(start), float(end)) if left <= LEFT * untouched else None

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.timing import DRIFTS, EARLY
+from pierburg_ros.diagnosis.disturbance.moments import exact, squared_error
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import forgiven
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
@@ -21,11 +20,6 @@ FARTHEST = 2.0
 GRID = 0.2
 """Distance of the times that are tried first, in the actuator's own time. Work: 441 simulations; all five clocks that
 were off were found from there."""
-EXACT = 1e-3
-"""How exactly the two times are told, in the actuator's own time. Derived: 0.1 ms for the valve, whose shaft moves by a
-thousandth of its travel in that time, less than usual noise."""
-TRIALS = 150
-"""Simulations in which they are made exact. Work: the five took 34 to 37; not varied."""
 LEFT = 0.5
 """Share of the cost that the best times may leave. Chosen: the true ones left 0.05 to 0.16 beside the right physics
 (n = 5); what is wrong elsewhere 0.93 and more (n = 4)."""
@@ -77,16 +71,12 @@ def other_clock(data: Data, model: Model) -> OtherClock | None:
     first, last = float(time[0]), float(time[-1])
 
     def cost(late: Signal) -> float:
-        clock = OtherClock(first, last, *late)
-        left = replace(data, runs=tuple(clock.applied(run) for run in data.runs)).residual(model)
-        return float(np.sum(np.square(forgiven(left))))
+        return float(np.sum(squared_error(data, model, OtherClock(first, last, *late).applied)))
 
     grid = own * np.arange(-FARTHEST, FARTHEST + 0.5 * GRID, GRID)
     best = min((np.array([begin, end]) for begin in grid for end in grid), key=cost)
-    around = best + 0.5 * GRID * own * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    options = {"initial_simplex": around, "xatol": EXACT * own, "fatol": 1.0, "maxfev": TRIALS}
-    found = minimize(cost, best, method="Nelder-Mead", options=options)
-    clock = OtherClock(first, last, *map(float, found.x))
-    if found.fun > LEFT * cost(np.zeros(2)) or not clock.wrong(float(np.median(np.diff(time)))):
+    late, left = exact(cost, best, 0.5 * GRID * own, own)
+    clock = OtherClock(first, last, *map(float, late))
+    if left > LEFT * cost(np.zeros(2)) or not clock.wrong(float(np.median(np.diff(time)))):
         return None
     return clock

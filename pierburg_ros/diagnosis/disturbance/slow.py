@@ -52,15 +52,11 @@ class Supply:
 
     def simulated(self, run: Run, course: Course) -> Simulated:
         """See `Slow`."""
-        given = run.inputs
-        time = self._moments(run.time, given.time)
-        place = np.maximum(np.searchsorted(given.time, time, side="right") - 1, 0)
-        enabled = None if given.enabled is None else given.enabled[place]
-        basis = course.basis(time)
+        time = self._moments(run.time, run.inputs.time)
+        given, basis = run.inputs.at(time), course.basis(time)
 
         def simulated(model: Model, values: Signal) -> Signal:
-            supply = self.voltage * np.exp(basis @ values)
-            inputs = replace(given, time=time, command=given.command[place], supply_voltage=supply, enabled=enabled)
+            inputs = replace(given, supply_voltage=self.voltage * np.exp(basis @ values))
             return replace(run, inputs=inputs).simulated(model)
 
         return simulated

@@ -98,7 +98,8 @@ def test_a_load_that_came_and_went_gives_way_to_an_open_bridge():
     values = {"external_load.torque": 0.2, "external_load.start": 9.0, "external_load.end": 12.0}
     drifted = found.estimator.fit(Explanation(("spring_stiffness",)), forgiving=True)
     fit = found.estimator.at(Explanation(("spring_stiffness",), (load,)), {**drifted.values, **values})
-    powered = bridge_for_load(replace(found, chosen=fit), [given])
+    powered, known = bridge_for_load(replace(found, chosen=fit), [given])
+    assert known.enabled.at(np.array([8.9, 9.1, 12.1])).tolist() == [1, 0, 1]
     assert Estimator(powered, NOMINAL).fit(Explanation(("spring_stiffness",)), drifted.values).ratio < EXPLAINED
     assert bridge_for_load(replace(found, chosen=drifted), [given]) is None
     assert bridge_for_load(replace(found, chosen=fit), [given, given]) is None
