@@ -44,10 +44,11 @@ library: $(STAMP)
 quick: $(STAMP)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m 'not ros and not search'
 
-# Processes over DDS can be starved on a shared machine; a failure is tried again and shown as such. One worker
-# process runs the tests, so that a crash of the middleware's own code is a failure like any other.
+# Processes over DDS can be starved on a shared machine; a failure is tried again and shown as such. Worker processes
+# run the tests, so that a crash of the middleware's own code is a failure like any other; two, for most of the time
+# passes in waiting.
 nodes: $(STAMP)
-	$(BIN)/python -m pytest -n 1 -m ros --reruns 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m ros --reruns 2
 
 # An environment of its own: colcon needs setuptools below 80. The libraries come from .venv.
 $(COLCON)/.installed: $(STAMP)
