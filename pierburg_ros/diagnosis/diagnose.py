@@ -15,6 +15,7 @@ from pierburg_ros.diagnosis.disturbance.rounding import rounded
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.evidence.quality import refuse_unusable
 from pierburg_ros.diagnosis.limits.limits import limits
+from pierburg_ros.diagnosis.limits.marks import marks
 from pierburg_ros.diagnosis.remainder.around import goes_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER
 from pierburg_ros.diagnosis.remainder.remainder import Remainder, remainder, unexamined, unnamed
@@ -83,11 +84,10 @@ def diagnose(
     conclusion = conclude(found, rest)
     if found.data.disturbed:
         conclusion = replace(conclusion, verdict="unexplained")
-    parts = deadline.attempt(
-        lambda: shares(found, conclusion.recalibrated, conclusion.final, conclusion.model), Shares({}, None)
-    )
+    parts = deadline.attempt(partial(shares, found, conclusion, jobs, deadline), Shares({}, None))
     excluded = limits(found, conclusion.final, progress, jobs, deadline)
-    written = document(found, conclusion, parts, excluded, deadline.stopped)
+    seen = marks(found, conclusion.final, jobs)
+    written = document(found, conclusion, parts, excluded, seen, deadline.stopped)
     shown = signals(found.data.longest, conclusion)
     result = Result(written, conclusion.model, found.data.runs, shown, exhibits(found, conclusion))
     return simulator.told(result) if simulator else result

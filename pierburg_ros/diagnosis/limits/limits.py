@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from pierburg_ros.arrays import Signal
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.search.found import INDEPENDENT, Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
@@ -19,7 +22,7 @@ from pierburg_ros.estimation.data import with_validation
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.estimation.least_squares import BRIEF, FULL
 from pierburg_ros.estimation.likelihood import TIED
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
@@ -33,12 +36,16 @@ varied."""
 STEPS = 4
 """Strengths that are simulated for one start. Derived: the rise goes by about the square of the strength, so each
 simulation tells the next one; four come within a tenth wherever that holds to a third."""
+AS_FORESEEN = 0.1
+"""Share of the foreseen rise up to which a simulation may miss what linear steps foresee, as a sum of squares, for that
+to set the limit. Derived: where the rise is what is allowed it is off by 2 sqrt(0.1) + 0.1 at most, 0.73 of itself,
+and the strength by sqrt(1.73), which is less than `WIDENED`."""
 WIDENED = 1.5
 """Factor by which a strength grows that a fit of the other parameters has shown to be possible after all. Chosen: a
 limit is then at most so much too cautious; not varied."""
-ATTEMPTS = 5
-"""How often it grows before the effect counts as not excluded. Work: each costs half a brief descent; 7.6 times the
-linear estimate."""
+ATTEMPTS = 6
+"""Strengths at which the others are fitted before the effect counts as not excluded. Work: each costs half a brief
+descent; together up to 58 times the linear estimate."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,32 @@ class _Case:
         return (own / high, own / low) if self.above else (low / own, high / own)
 
 
+@dataclass(frozen=True)
+class _Foreseen:
+    """What linear steps foresee of a case: the factor on its strength that is excluded, and what is there.
+
+    The base parameters have followed to a `point`, and the `residual` there has a chi2 that is just `possible`:
+    `allowed` above the least for any strength. Factors beyond the `largest` are not looked at.
+    """
+
+    case: _Case
+    factor: float
+    point: Signal
+    residual: Signal
+    possible: float
+    allowed: float
+    largest: float
+
+    @property
+    def rise(self) -> float:
+        """How far chi2 rises above its least: by more than is allowed at the least strength that is looked at."""
+        return _squared(self.residual) - self.possible + self.allowed
+
+    def missed(self, fit: Fit) -> float:
+        """The sum of squares by which a fit there misses what is foreseen."""
+        return _squared(fit.solution.residual - self.residual)
+
+
 def limits(
     found: Found,
     final: Fit,
@@ -108,8 +141,8 @@ def limits(
     for case in _cases(found, final):
         if case.variant.effect not in final.explanation.effects:
             strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
-    # a simulation takes the longer the stiffer, and what takes longest begins first
-    stiff_first = sorted(strengths, key=lambda key: not strengths[key][0].above)
+    # what takes longest begins first: a simulation that is stiff, or stops and goes
+    slow_first = sorted(strengths, key=lambda key: not (EFFECT[key[0]].jumps or strengths[key][0].above))
     tested: dict[tuple[str, str], Limit | None] = {}
     tell = staged(progress, "what is ruled out", len(strengths))
 
@@ -121,7 +154,7 @@ def limits(
                 tell(f"limit of {key[0]}")
                 tested[key] = _limit(estimator, base, strengths[key])
 
-            for _ in pool.map(limit, stiff_first):
+            for _ in pool.map(limit, slow_first):
                 pass
 
     deadline.attempt(test, None)
@@ -132,8 +165,12 @@ def limits(
 
 def _limit(estimator: Estimator, base: Fit, cases: Sequence[_Case]) -> Limit | None:
     """The weakest limit among the ways in which an effect may act by one strength."""
-    factors = [(case, _linear(estimator, base, case)) for case in cases]
-    return _confirmed(estimator, base, *max(factors, key=lambda pair: _strength(*pair)))
+    foreseen = [_foreseen(estimator, base, case) for case in cases]
+    known = [each for each in foreseen if each is not None]
+    if len(known) < len(foreseen):
+        return None
+    weakest = max(known, key=lambda each: _strength(each.case, each.factor))
+    return _confirmed(estimator, base, weakest)
 
 
 def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
@@ -179,12 +216,12 @@ def _allowed(case: _Case, base: Fit) -> float:
     return (TIED if EFFECT[case.variant.effect].jumps else ONE_SIDED) * max(base.ratio**2, 1.0)
 
 
-def _linear(estimator: Estimator, base: Fit, case: _Case) -> float:
-    """Factor on the strength of a start at which it is excluded while the base parameters follow linearly.
+def _foreseen(estimator: Estimator, base: Fit, case: _Case) -> _Foreseen | None:
+    """At what strength of a start it is excluded while the base parameters follow linearly; None where at none.
 
-    Infinite where no strength is. A change that goes by the strength, s u, leaves (r - s u)^2: least at u r / u^2, and
-    by the square root of what is allowed beyond that over the norm of u it is excluded. A strength too small for a
-    search is not looked at, since it may take the simulator for ever; nor is one too large.
+    A change that goes by the strength, s u, leaves (r - s u)^2: least at u r / u^2, and by the square root of what is
+    allowed beyond that over the norm of u it is excluded. A strength too small for a search is not looked at, since it
+    may take the simulator for ever; nor is one too large.
     """
     projected = projection(base)
     residual = projected(base.solution.residual)
@@ -193,47 +230,138 @@ def _linear(estimator: Estimator, base: Fit, case: _Case) -> float:
     for _ in range(STEPS):
         changed = difference(estimator, base, case.variant, case.at(factor))
         if changed is None:
-            return math.inf
-        unit = projected(changed) / factor
+            return None
+        change = changed / factor
+        unit = projected(change)
         size = float(unit @ unit)
         if size * factor**2 < 1e-6:
-            return math.inf
+            return None
         best = max(float(unit @ residual) / size, 0.0)
         following = max(best + math.sqrt(allowed / size), least)
         if following > largest:
-            return math.inf
-        if abs(math.log(following / factor)) < 0.1:
-            return following
+            return None
+        settled = abs(math.log(following / factor)) < 0.1
         factor = following
-    return factor
+        if settled:
+            break
+    point = base.solution.point + factor * _moved(base, change)
+    possible = base.chi2 - size * best**2 + allowed
+    return _Foreseen(case, factor, point, base.solution.residual - factor * unit, possible, allowed, largest)
 
 
-def _confirmed(estimator: Estimator, base: Fit, case: _Case, factor: float) -> Limit | None:
-    """The limit where a fit of the base parameters does not make the strength possible; None where it always does."""
-    effect = EFFECT[case.variant.effect]
-    declared = effect.parameter(case.parameter)
-    allowed = _allowed(case, base)
-    for _ in range(ATTEMPTS if math.isfinite(factor) else 0):
-        own = {f"{effect.id}.{name}": value for name, value in (*case.at(factor).items(), *case.variant.fixed)}
-        values = effect.counted(own, base.model.values)
-        value = values[f"{effect.id}.{case.parameter}"]
+def _moved(base: Fit, change: Signal) -> Signal:
+    """How the base parameters follow a change of the residual: not where next to nothing tells them apart."""
+    slopes = base.solution.jacobian
+    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    return np.asarray(np.linalg.lstsq(slopes / scale, change, rcond=INDEPENDENT)[0] / scale)
+
+
+def _confirmed(estimator: Estimator, base: Fit, foreseen: _Foreseen) -> Limit | None:
+    """The limit where the base parameters do not make the strength possible; None where they always do.
+
+    One simulation tells whether all is as foreseen; if not, fits of the base parameters do.
+    """
+    held = _Held(estimator, base, foreseen.case)
+    way, still = (foreseen.point - base.solution.point) / foreseen.factor, np.zeros(base.solution.point.size)
+    there = held.fit(foreseen.factor, way, 0)
+    if there is not None and (missed := foreseen.missed(there)) < AS_FORESEEN * foreseen.rise:
+        short = max(foreseen.possible - there.chi2 + missed, 0.0)
+        return held.limit(foreseen.factor * math.sqrt(1.0 + short / foreseen.allowed))
+    unmoved = held.fit(foreseen.factor, still, 0)
+    nearer = there is not None and (unmoved is None or there.chi2 <= unmoved.chi2)
+    return held.limit(_excluded(held, foreseen, way if nearer else still))
+
+
+def _excluded(held: _Held, foreseen: _Foreseen, way: Signal) -> float:
+    """The factor at which the others do not make the strength possible, infinite where they always do.
+
+    Of a strength that is possible they tell in what way they go for a larger one, and how much larger it may be. Where
+    a descent on that way ends early, one on the `way` that is foreseen, or from where they are, may not.
+    """
+    factor, ways, possible, excluded = foreseen.factor, [way], 0.0, math.inf
+    for _ in range(ATTEMPTS):
+        fit = held.nearest(factor, ways, BRIEF // 2 if len(ways) == 1 else FULL, foreseen.possible)
+        if fit is not None and fit.chi2 > foreseen.possible:
+            excluded = factor
+        else:
+            possible, growth = factor, WIDENED
+            if fit is not None:
+                rise = max(foreseen.allowed - (foreseen.possible - fit.chi2), 1e-300)
+                growth = min(max(math.sqrt(foreseen.allowed / rise), WIDENED), WIDENED**2)
+                ways = [held.way(fit, factor), way, np.zeros_like(way)]
+        if excluded <= WIDENED * possible or (math.isfinite(excluded) and possible == 0.0):
+            break
+        factor = math.sqrt(possible * excluded) if math.isfinite(excluded) else possible * growth
+        if factor > foreseen.largest:
+            break
+    return excluded
+
+
+class _Held:
+    """An effect held at a strength, beside `base` parameters that follow.
+
+    What is counted from a base parameter is held as what it exceeds that, or the parameter would swallow it.
+    """
+
+    def __init__(self, estimator: Estimator, base: Fit, case: _Case) -> None:
+        self._estimator, self._base, self._case = estimator, base, case
+        self._effect, own = EFFECT[case.variant.effect], (*case.start.items(), *case.variant.fixed)
+        fixed = tuple((name, value) for name, value in own if name != case.parameter)
+        self._explanation = base.explanation.plus(Variant(case.variant.effect, (case.parameter,), fixed))
+        self._name = f"{case.variant.effect}.{case.parameter}"
+        self._place = self._explanation.names.index(self._name)
+
+    def nearest(self, factor: float, ways: Sequence[Signal], iterations: int, enough: float) -> Fit | None:
+        """The lowest of fits on some `ways`, or the first that comes to what is `enough`."""
+        fits: list[Fit] = []
+        for way in ways:
+            fit = self.fit(factor, way, iterations, enough)
+            if fit is not None:
+                fits.append(fit)
+                if fit.chi2 <= enough:
+                    break
+        return min(fits, key=lambda fit: fit.chi2, default=None)
+
+    def fit(self, factor: float, way: Signal, iterations: int, enough: float = -math.inf) -> Fit | None:
+        """The others fitted with a factor on the strength, from where they follow it on a `way`, by so much a unit.
+
+        None where there is no such model.
+        """
+        coordinates = self._estimator.coordinates(self._base.explanation)
+        point = self._base.solution.point + factor * way
+        others = {**self._base.values, **coordinates.values(np.clip(point, *coordinates.bounds))}
+        start = {**others, **self._values(factor, others)}
+        slopes = np.insert(self._base.solution.jacobian, self._place, 0.0, axis=1)
+        try:
+            return self._estimator.fit(
+                self._explanation,
+                start,
+                iterations,
+                held=self._name,
+                slopes=slopes if iterations else None,
+                enough=enough,
+            )
+        except InputError:
+            return None
+
+    def way(self, fit: Fit, factor: float) -> Signal:
+        """By how much for each unit of a factor the others have followed in a `fit`."""
+        return np.asarray(np.delete(fit.solution.point, self._place) - self._base.solution.point) / factor
+
+    def limit(self, factor: float) -> Limit | None:
+        """The strength at a factor, counted from `base`; None where it is beyond what is declared."""
+        declared = self._effect.parameter(self._case.parameter)
+        if not math.isfinite(factor):
+            return None
+        value = self._values(factor, self._base.model.values)[self._name]
         if not declared.minimum <= value <= declared.maximum:
             return None
-        if _excluded(estimator, base, case, values, allowed):
-            return Limit(effect.id, case.parameter, abs(value), case.above)
-        factor *= WIDENED
-    return None
+        return Limit(self._effect.id, self._case.parameter, abs(value), self._case.above)
+
+    def _values(self, factor: float, others: Mapping[str, float]) -> dict[str, float]:
+        own = (*self._case.at(factor).items(), *self._case.variant.fixed)
+        return self._effect.counted({f"{self._effect.id}.{name}": value for name, value in own}, others)
 
 
-def _excluded(estimator: Estimator, base: Fit, case: _Case, values: dict[str, float], allowed: float) -> bool:
-    """Whether the fit of all but an effect at given `values` stays worse than `base` by more than is allowed."""
-    fixed = tuple((name.partition(".")[2], value) for name, value in values.items())
-    held = Variant(case.variant.effect, (), fixed)
-    explanation = Explanation(base.explanation.drifted, (*base.explanation.variants, held), base.explanation.changed)
-    try:
-        possible, slopes = base.chi2 + allowed, base.solution.jacobian
-        start = {**base.values, **values}
-        fit = estimator.fit(explanation, start, BRIEF // 2, slopes=slopes, enough=possible)
-    except InputError:
-        return False
-    return fit.chi2 > possible
+def _squared(signal: Signal) -> float:
+    return float(signal @ signal)

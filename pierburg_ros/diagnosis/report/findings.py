@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
@@ -37,9 +39,7 @@ from pierburg_ros.diagnosis.schema import (
     RuledOut,
     TorqueOverTime,
 )
-from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.linear import largest_mark
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
@@ -52,11 +52,18 @@ from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 
 
-def document(found: Found, conclusion: Conclusion, parts: Shares, limits: Limits, stopped: bool = False) -> Diagnosis:
-    """The whole document; `stopped`: the search had to end before it was done."""
+def document(
+    found: Found,
+    conclusion: Conclusion,
+    parts: Shares,
+    limits: Limits,
+    marks: Mapping[str, float],
+    stopped: bool = False,
+) -> Diagnosis:
+    """The whole document, with the `marks` of effects by id; `stopped`: the search had to end before it was done."""
     data, actuator = found.data, found.data.actuator
     named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
-    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(found, conclusion)
+    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(marks)
     short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
     text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
@@ -223,15 +230,8 @@ def candidates(found: Found, conclusion: Conclusion, most: int = 30) -> list[Can
     ]
 
 
-def not_testable(found: Found, conclusion: Conclusion) -> list[NotTestable]:
+def not_testable(marks: Mapping[str, float]) -> list[NotTestable]:
     """Effects that could act at a plausible strength without a mark in these recordings."""
-    final = conclusion.final
-    base = found.estimator.restated(final)
-    marks: dict[str, float] = {}
-    for variant, starts in starts_of(found.data, final.model).items():
-        if variant.effect not in final.explanation.effects:
-            mark = largest_mark(found.estimator, base, variant, starts[:4])
-            marks[variant.effect] = max(marks.get(variant.effect, 0.0), mark)
     return [
         NotTestable(id=effect, why=words.untestable(mark), record=EFFECT[effect].record)
         for effect, mark in marks.items()

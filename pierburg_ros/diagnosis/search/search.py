@@ -125,7 +125,11 @@ class Search:
         return self.tried >= self.beam.budget
 
     def _grow(self, best: Fit) -> None:
-        """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing."""
+        """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing.
+
+        A ripple waits until what is most promising beside a drift has been tried, if anything will be: between rests it
+        takes seconds, and beside a drift it is found as well as alone.
+        """
         size = best.explanation.size
         if size and adequate(best):
             self._refine_alone(best)
@@ -152,7 +156,7 @@ class Search:
             if self._complete(size + 1) or self.exhausted:
                 return
             self.expand(seed)
-            if not self._complete(size + 1):
+            if not self._complete(size + 1) and (size or self.beam.depth == 1):
                 self._fit_ripples(seeds)
             if self._wants_refinement(best, size + 1):
                 self.refine(self.of_size(size + 1))

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.found import Found
+from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Variant, without
 from pierburg_ros.estimation.likelihood import counted
 from pierburg_ros.plant import Model
+from pierburg_ros.workers import workers
 
 SEEN = 0.02
 """Squared error above the noise, as a share of the noise's own, below which there is no mismatch. Derived: the noise is
@@ -38,40 +41,43 @@ class Shares:
     remains: float | None
 
 
-def shares(found: Found, recalibrated: Fit, final: Fit, model: Model) -> Shares:
-    """What the effects of `final` explain, and what `model` (it, with a residual torque if there is one) leaves.
+def shares(found: Found, conclusion: Conclusion, jobs: int | None = None, deadline: Deadline | None = None) -> Shares:
+    """What the effects of a conclusion explain, and what its model (with a residual torque if there is one) leaves.
 
     Beside the others: what is lost where an effect is left out and the rest fitted again. Alone: what is gained where
     it is added to the model with re-estimated parameters, without the others.
     """
-    before = _excess(found, recalibrated.model, recalibrated)
-    if before <= SEEN:
-        return Shares({}, None)
-    left = _excess(found, final.model, final)
-    effects = {}
-    for variant in final.explanation.variants:
-        if EFFECT[variant.effect].rounds is not None:
-            continue
-        lost = _excess_without(found, final, variant) - left
-        gained = before - _excess_alone(found, recalibrated, final, variant)
-        effects[variant.effect] = Share(*(float(np.clip(part / before, 0.0, 1.0)) for part in (lost, gained)))
-    return Shares(effects, float(np.clip(_excess(found, model, final) / before, 0.0, 1.0)))
+    recalibrated, final = conclusion.recalibrated, conclusion.final
+    with workers(jobs, deadline) as pool:
+        estimator = Estimator(found.data, found.nominal, pool.map)
+        before = _excess(estimator, recalibrated.model, recalibrated)
+        if before <= SEEN:
+            return Shares({}, None)
+        left = _excess(estimator, final.model, final)
+        effects = {}
+        for variant in final.explanation.variants:
+            if EFFECT[variant.effect].rounds is not None:
+                continue
+            lost = _excess_without(estimator, final, variant) - left
+            gained = before - _excess_alone(estimator, recalibrated, final, variant)
+            effects[variant.effect] = Share(*(float(np.clip(part / before, 0.0, 1.0)) for part in (lost, gained)))
+        return Shares(effects, float(np.clip(_excess(estimator, conclusion.model, final) / before, 0.0, 1.0)))
 
 
-def _excess(found: Found, model: Model, fit: Fit) -> float:
+def _excess(estimator: Estimator, model: Model, fit: Fit) -> float:
     """Mean squared error [noise^2] above the noise on the training samples."""
-    residual = found.estimator.residual(model, fit.switch)
-    return max(counted(residual, found.data.half_step) / residual.size - 1.0, 0.0)
+    residual = estimator.residual(model, fit.switch)
+    return max(counted(residual, estimator.data.half_step) / residual.size - 1.0, 0.0)
 
 
-def _excess_without(found: Found, final: Fit, variant: Variant) -> float:
-    bare = found.estimator.fit(without(final.explanation, variant), final.values)
+def _excess_without(estimator: Estimator, final: Fit, variant: Variant) -> float:
+    bare = estimator.fit(without(final.explanation, variant), final.values)
     return max(bare.ratio**2 - 1.0, 0.0)
 
 
-def _excess_alone(found: Found, recalibrated: Fit, final: Fit, variant: Variant) -> float:
+def _excess_alone(estimator: Estimator, recalibrated: Fit, final: Fit, variant: Variant) -> float:
     explanation = recalibrated.explanation.plus(variant)
     own = {name: value for name, value in final.values.items() if name.startswith(f"{variant.effect}.")}
     starts = ({**recalibrated.values, **own}, {**final.values, **own})
-    fits = (found.estimator.fit(explanation, start) for start in starts)
+    fits = (estimator.fit(explanation, start) for start in starts)
     return max(min(fit.ratio for fit in fits) ** 2 - 1.0, 0.0)

@@ -153,8 +153,7 @@ def test_what_leads_by_far_is_grown_before_others_of_its_size(
     assert found.seeds[:2] == [NOTHING, second]
 
 
-def test_ripples_are_looked_for_before_drifts_are_grown(short: Data, pool: Executor) -> None:
-    """And before pairs, alone: beside nothing they are found in a second or two."""
+def test_ripples_wait_for_promising_pairs_and_come_before_drifts_are_grown(short: Data, pool: Executor) -> None:
 
     class Leading(Grown):
         def _fit_most_promising(self, seeds: object) -> None:
@@ -162,8 +161,14 @@ def test_ripples_are_looked_for_before_drifts_are_grown(short: Data, pool: Execu
 
     found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, PAIRS[0]: 4.0}, Beam(depth=2))
     found.run()
-    assert found.before_ripples == {1: [NOTHING], 2: [NOTHING]}
+    assert found.before_ripples == {2: [NOTHING]}
     assert FRICTION in found.seeds
+
+
+def test_ripples_are_looked_for_alone_where_no_pair_will_be(short: Data, pool: Executor) -> None:
+    found = Grown(short, pool, {NOTHING: 9.0, ONES[0]: 6.0}, Beam(depth=1))
+    found.run()
+    assert found.before_ripples == {1: [NOTHING]}
 
 
 @pytest.mark.parametrize(("ratio", "refined"), [(4.0, True), (6.0, False), (0.99, False)])
