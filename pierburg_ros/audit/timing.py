@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import theilslopes
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.explained import BESIDE, Explained, Fit, correlated, explained
@@ -65,6 +64,9 @@ def wandering(signals: Signals, part: Signals, given: Explained, nominal: Model)
         return None
     middle = np.array([signals.time[int(np.median(each))] for each in _parts(signals.time.size)])
     late = signals.interval * lags[:, 0] + rates[best] * middle
+    # takes a quarter of a second to load
+    from scipy.stats import theilslopes
+
     slope, begin, *_ = theilslopes(late[seen], middle[seen])
     drift = abs(slope) * signals.duration
     told = seen & (np.abs(late - begin - slope * middle) <= EARLY * signals.interval + STRAIGHT * drift)

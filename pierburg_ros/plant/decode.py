@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.torques import sensor
@@ -51,7 +50,12 @@ def begun(model: Model, shown: NDArray[np.float64], quantity: str) -> NDArray[np
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
     """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
     shown = decoded(model, measured, quantity)
-    return cumulative_trapezoid(shown, time, initial=0.0) if quantity == "speed" else shown
+    if quantity != "speed":
+        return shown
+    # takes a quarter of a second to load
+    from scipy.integrate import cumulative_trapezoid
+
+    return np.asarray(cumulative_trapezoid(shown, time, initial=0.0))
 
 
 def angle_per_unit(model: Model) -> float:

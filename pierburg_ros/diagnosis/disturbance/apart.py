@@ -92,9 +92,14 @@ def _by_another_clock(
     yield from ((rest, None) for rest in told if rest)
 
 
-def with_other_clock(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> Data | None:
-    """The recording with its input moved to when it acted; None where an explanation lacks more, or it is a delay."""
-    clock = other_clock(data, fit.model)
+def with_other_clock(
+    data: Data, estimator: Estimator, fit: Fit, recording: Recording, alone: bool = False
+) -> Data | None:
+    """The recording with its input moved to when it acted; None where an explanation lacks more, or it is a delay.
+
+    `alone`: that is all that is wrong with `fit` as it is.
+    """
+    clock = other_clock(data, fit.model, alone)
     if clock is None:
         return None
     told = _known(data, estimator, fit, clock.known(recording), clock.remark(recording.input))
@@ -148,16 +153,19 @@ def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Sl
 
 
 def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Data | None:
-    """A single recording without the one stretch that the nominal model fails in, if that leaves nothing elsewhere.
+    """A single recording without what disturbs it, if the nominal model leaves nothing then.
 
-    None where it does, and where an actuator is simulated in stretches. Nothing is left out where the bridge was open
-    in that stretch.
+    Without the one stretch that it fails in, or with the bridge open there, or with the input moved to when it acted.
+    None where it leaves something, and where an actuator is simulated in stretches.
     """
     if len(recordings) > 1 or data.in_stretches:
         return None
     estimator = Estimator(data, nominal)
-    told = without_stretch(data, estimator, estimator.at(Explanation()), recordings[0])
-    return told[0] if told and adequate(told[1]) else None
+    fit = estimator.at(Explanation())
+    told = without_stretch(data, estimator, fit, recordings[0])
+    if told and adequate(told[1]):
+        return told[0]
+    return None if adequate(fit) else with_other_clock(data, estimator, fit, recordings[0], alone=True)
 
 
 def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> tuple[Data, Fit] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from pierburg_ros.diagnosis.search.candidates import may_change
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
@@ -37,23 +38,26 @@ def fit_rivals(search: Search, best: Fit) -> None:
     A load that never ends is a parameter that changed when it began.
     Where events jump and something is left, other drifts start from the values of `best` as well.
     """
-    limit = alike(best)
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
         search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
         rivals = list(_by_parameters(rest, search.drifts, 2 if isinstance(quantity, Variant) else 1))
         rivals += _by_a_change(rest, quantity, search)
-        for rival in rivals:
-            known = search.fits.get(rival)
-            if isinstance(quantity, Variant) and (known is None or known.misfit > limit):
-                _take_over(search, rival, quantity, best)
-            elif jumps(rest) and not complete(best):
-                # grown on the rest, its effects have first been bent to stand for the drift
-                search.add(rival, best.values)
+        list(search.pool.map(partial(_tried, search, rest, quantity, best), dict.fromkeys(rivals)))
         fits = (search.fits[rival] for rival in rivals if rival in search.fits)
         # what lacks less than one more quantity has to gain may lack it by its local minimum alone
         near = (fit for fit in fits if not complete(best) or not gains_enough(fit, best, 1, search.data))
         search.refine(near)
+
+
+def _tried(search: Search, rest: Explanation, quantity: Quantity, best: Fit, rival: Explanation) -> None:
+    """Try a `rival` of a `quantity` of `best`, which has the `rest` beside it."""
+    known = search.fits.get(rival)
+    if isinstance(quantity, Variant) and (known is None or known.misfit > alike(best)):
+        _take_over(search, rival, quantity, best)
+    elif jumps(rest) and not complete(best):
+        # grown on the rest, its effects have first been bent to stand for the drift
+        search.add(rival, best.values)
 
 
 def _by_parameters(rest: Explanation, drifts: tuple[str, ...], most: int) -> Iterator[Explanation]:
