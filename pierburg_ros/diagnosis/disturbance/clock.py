@@ -51,8 +51,16 @@ class OtherClock:
         return replace(run, inputs=replace(run.inputs, time=self.true(run.inputs.time)))
 
     def known(self, recording: Recording) -> Recording:
-        """`recording` as if its input had been stamped when it acted."""
-        return replace(recording, command=Channel(self.true(recording.command.time), recording.command.values))
+        """`recording` as if its input, and what was logged of the drive beside it, had been stamped when it acted."""
+        return replace(
+            recording,
+            command=self._moved(recording.command),
+            supply_voltage=recording.supply_voltage and self._moved(recording.supply_voltage),
+            enabled=recording.enabled and self._moved(recording.enabled),
+        )
+
+    def _moved(self, channel: Channel) -> Channel:
+        return Channel(self.true(channel.time), channel.values)
 
     def wrong(self, interval: float) -> bool:
         """Whether no delay does that: motion comes before its cause, or runs apart from it, by some `interval` [s]."""

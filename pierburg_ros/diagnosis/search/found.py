@@ -157,12 +157,13 @@ def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fi
     Where events jump, other local minima are searched, unless the search has: a fit may reach the noise in one that is
     not the lowest.
     """
-    chosen, estimator = found.chosen, Estimator(with_validation(found.data), found.nominal)
-    fit = estimator.fit(chosen.explanation, chosen.values)
+    chosen = found.chosen
     with workers(jobs, deadline) as pool:
+        estimator = Estimator(with_validation(found.data), found.nominal, pool.map)
+        fit = estimator.fit(chosen.explanation, chosen.values)
         if jumps(fit.explanation) and not chosen.refined:
-            fit = next(iter(pool.map(lambda fit: refined(estimator, fit), [fit])))
-        return lowest_with_estimates(estimator, fit, pool.map)
+            fit = refined(estimator, fit)
+        return lowest_with_estimates(Estimator(estimator.data, found.nominal), fit, pool.map)
 
 
 def _recalibrated(found: Search, pool: Executor) -> Fit:

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording
 
+from pierburg_ros.diagnosis.disturbance import clock as clocks
 from pierburg_ros.diagnosis.disturbance.apart import with_other_clock
 from pierburg_ros.diagnosis.disturbance.clock import OtherClock, other_clock
+from pierburg_ros.diagnosis.disturbance.moments import exact
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
@@ -46,6 +48,25 @@ def test_the_true_times_undo_the_stamps():
     known = OtherClock(FIRST, LAST, 0.02, 0.12).known(given)
     assert np.allclose(known.command.time, ONE.command.time, atol=1e-3)
     assert np.array_equal(known.command.values, ONE.command.values)
+
+
+def test_what_was_logged_of_the_drive_moves_with_the_input():
+    """As it does while the times are looked for."""
+    duty = ONE.command
+    moved = OtherClock(FIRST, LAST, 0.02, 0.12).known(
+        replace(ONE, supply_voltage=Channel(duty.time, 12.0 + duty.values), enabled=None)
+    )
+    assert np.array_equal(moved.supply_voltage.time, moved.command.time) and moved.enabled is None
+
+
+def test_alone_it_is_told_at_once_and_not_beside_missing_physics(monkeypatch):
+    whole = []
+    monkeypatch.setattr(clocks, "exact", lambda cost, *rest: whole.append(cost) or exact(cost, *rest))
+    assert other_clock(data_on(stamped(0.0, 0.1)), NOMINAL, alone=True).at_last == pytest.approx(0.1, abs=1e-3)
+    parts = len(whole)
+    lacking = stamped(0.0, 0.1, recording({"spring_stiffness": 0.3}))
+    assert other_clock(data_on(lacking), NOMINAL, alone=True) is None
+    assert len(whole) - parts < parts
 
 
 def test_what_is_lacking_beside_it_is_asked_for():
