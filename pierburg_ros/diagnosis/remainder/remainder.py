@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 from pierburg_ros.deadline import Deadline
@@ -14,8 +15,9 @@ from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Weight
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
 from pierburg_ros.workers import workers
 
@@ -64,15 +66,42 @@ def remainder(
 
     It is fitted as a torque over angle and velocity, and kept where unseen data confirm it.
     """
-    data, model = found.data, named.base and named.base.model
-    ways = [lambda _: model] if model else recalibrations(found.nominal, found.recalibrated.explanation)
+    data = found.data
     with workers(jobs, deadline) as pool:
+        named, known = certain(named, pool)
+        model = named.base and named.base.model
+        ways = [lambda _: model] if model else recalibrations(found.nominal, found.recalibrated.explanation)
         shape = fit_shape(data, ways, pool, progress)
         stands = confirmed(shape, data, pool)
         base = named.base or _below(found, shape if stands else None)
-        known = {**estimates(named.estimator, base, pool.map), **named.told}
+        known = known if named.base else estimates(named.estimator, base, pool.map)
     base = found.estimator.restated(base)
     return Remainder(base, known, named.left_out, named.weights, shape if stands else None)
+
+
+def certain(named: Standing, pool: Executor) -> tuple[Standing, dict[str, Estimate]]:
+    """What stands without effects that may as well not act, and the intervals of its values by dotted name.
+
+    What a single recording supports may gain by an effect, and yet not tell of any of its strengths that it is not 0.
+    """
+    if named.base is None:
+        return named, {}
+    known = {**estimates(named.estimator, named.base, pool.map), **named.told}
+    own = named.base.explanation
+    idle = [variant for variant in own.variants if variant.effect in named.weights and not _acts(variant, known)]
+    if not idle:
+        return named, known
+    smaller = Explanation(own.drifted, tuple(each for each in own.variants if each not in idle), own.changed)
+    weights = {effect: weight for effect, weight in named.weights.items() if effect in smaller.effects}
+    base = named.estimator.fit(smaller, named.base.values) if smaller.size else None
+    return certain(replace(named, base=base, weights=weights), pool)
+
+
+def _acts(variant: Variant, known: Mapping[str, Estimate]) -> bool:
+    """Whether the interval of a strength leaves 0 out, or of none is one known."""
+    names = (f"{variant.effect}.{name}" for name in EFFECT[variant.effect].strength)
+    intervals = [known[name] for name in names if name in known]
+    return not intervals or any(each.low > 0.0 or each.high < 0.0 for each in intervals)
 
 
 def _below(found: Found, shape: Shape | None) -> Fit:

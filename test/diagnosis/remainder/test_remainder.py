@@ -3,16 +3,19 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from support.fits import found_among, made_up
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.remainder import _below, unexamined
+from pierburg_ros.diagnosis.remainder.remainder import _below, certain, unexamined
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.weighing import Weight
+from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
+from pierburg_ros.workers import workers
 
 STIFFER = {"spring_stiffness": 0.17}
 NEVER = (np.zeros(0), np.zeros(0))
@@ -47,6 +50,29 @@ def test_what_has_been_named_stands_where_no_time_is_left_for_the_rest():
 def test_what_bends_has_not_drifted_where_no_time_is_left_for_its_interval():
     told = unexamined(recalibrated_on(STIFFER)).base
     assert told.explanation == Explanation() and told.model.values["spring_stiffness"] == 0.17
+
+
+@pytest.mark.parametrize(("coefficient", "stays"), [(0.02, True), (0.0, False)])
+def test_an_effect_that_may_as_well_not_act_is_not_told(coefficient: float, stays: bool):
+    """The interval of its strength holds 0; what drifts beside it stays."""
+    data = data_on(recording({**STIFFER, "viscous_friction.coefficient": coefficient}, duration=5.0))
+    estimator, weight = Estimator(data, NOMINAL), Weight(300.0, 100.0)
+    viscous = Variant("viscous_friction", ("coefficient",))
+    base = estimator.fit(Explanation(("spring_stiffness",), (viscous,)))
+    with workers(1) as pool:
+        told, known = certain(Standing(estimator, base, weights={"viscous_friction": weight}), pool)
+    assert told.weights == ({"viscous_friction": weight} if stays else {})
+    assert told.base is not None and told.base.explanation.drifted == ("spring_stiffness",)
+    assert ("viscous_friction.coefficient" in known) is stays and "spring_stiffness" in known
+    assert told.base.values["spring_stiffness"] == pytest.approx(0.17, rel=0.01)
+
+
+def test_where_nothing_else_stands_nothing_does():
+    estimator = Estimator(data_on(recording({}, duration=5.0)), NOMINAL)
+    base = estimator.fit(Explanation(variants=(Variant("viscous_friction", ("coefficient",)),)))
+    with workers(1) as pool:
+        told, known = certain(Standing(estimator, base, weights={"viscous_friction": Weight(300.0, 100.0)}), pool)
+    assert told.base is None and not told.weights and not known
 
 
 def recalibrated_on(changes: dict[str, float]) -> Found:
