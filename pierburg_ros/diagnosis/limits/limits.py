@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.limits.held import Case, Held
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.found import INDEPENDENT, Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
-from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.data import with_validation
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.least_squares import BRIEF, FULL
 from pierburg_ros.estimation.likelihood import TIED
-from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 ONE_SIDED = 2.71
@@ -71,32 +69,6 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class _Case:
-    """One way in which an effect may act: its variant, a start, and the parameter of it that is its strength."""
-
-    variant: Variant
-    start: Start
-    parameter: str
-
-    @property
-    def above(self) -> bool:
-        """Whether a smaller value makes it stronger."""
-        return EFFECT[self.variant.effect].parameter(self.parameter).inverse
-
-    def at(self, factor: float) -> Start:
-        """The start with its strength multiplied."""
-        value = self.start[self.parameter]
-        return {**self.start, self.parameter: value / factor if self.above else value * factor}
-
-    def factors(self, nominal: Model, duration: float) -> tuple[float, float]:
-        """The least and the largest factor at which the strength is within what a search would look at."""
-        axis = Coordinates((f"{self.variant.effect}.{self.parameter}",), nominal, duration).axes[0]
-        own = abs(self.start[self.parameter])
-        low, high = max(axis.value(axis.lower), 0.0), axis.value(axis.upper)
-        return (own / high, own / low) if self.above else (low / own, high / own)
-
-
-@dataclass(frozen=True)
 class _Foreseen:
     """What linear steps foresee of a case: the factor on its strength that is excluded, and what is there.
 
@@ -104,7 +76,7 @@ class _Foreseen:
     `allowed` above the least for any strength. Factors beyond the `largest` are not looked at.
     """
 
-    case: _Case
+    case: Case
     factor: float
     point: Signal
     residual: Signal
@@ -132,12 +104,12 @@ def limits(
     """The limit of every effect that `final` does not name, where these recordings set one.
 
     The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
-    recordings tell apart follow: linearly first, and at the limit by a fit (profile likelihood). What `final` leaves is
-    part of the likelihood, as a discrepancy. Of several places, rhythms or phases at which an effect may act, the
+    recordings tell apart follow (profile likelihood): linearly, and fitted where a simulation at the limit shows that
+    this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. Of several places, rhythms or phases at which an effect may act, the
     weakest limit counts. At the `deadline` those found by then are kept.
     """
     deadline = deadline or Deadline()
-    strengths: dict[tuple[str, str], list[_Case]] = {}
+    strengths: dict[tuple[str, str], list[Case]] = {}
     for case in _cases(found, final):
         if case.variant.effect not in final.explanation.effects:
             strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
@@ -163,13 +135,13 @@ def limits(
     return Limits(set_by, list(missing))
 
 
-def _limit(estimator: Estimator, base: Fit, cases: Sequence[_Case]) -> Limit | None:
+def _limit(estimator: Estimator, base: Fit, cases: Sequence[Case]) -> Limit | None:
     """The weakest limit among the ways in which an effect may act by one strength."""
     foreseen = [_foreseen(estimator, base, case) for case in cases]
     known = [each for each in foreseen if each is not None]
     if len(known) < len(foreseen):
         return None
-    weakest = max(known, key=lambda each: _strength(each.case, each.factor))
+    weakest = max(known, key=lambda each: each.case.strength(each.factor))
     return _confirmed(estimator, base, weakest)
 
 
@@ -186,7 +158,7 @@ def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
     return estimator, estimator.fit(explanation, final.values, BRIEF)
 
 
-def _cases(found: Found, final: Fit) -> Iterator[_Case]:
+def _cases(found: Found, final: Fit) -> Iterator[Case]:
     """Each way to act with a single strength, from starts spread over all there are; one of nothing cannot grow.
 
     Behind a filter of the input, whose time the recording itself tells, what is late has no limit: the filter may be
@@ -197,7 +169,7 @@ def _cases(found: Found, final: Fit) -> Iterator[_Case]:
         strengths = [name for name in effect.strength if name in variant.free]
         if len(strengths) == 1 and not (effect.late and found.data.input_filtered):
             for start in _spread([start for start in starts if start[strengths[0]] != 0.0]):
-                yield _Case(variant, start, strengths[0])
+                yield Case(variant, start, strengths[0])
 
 
 def _spread(starts: Sequence[Start]) -> Sequence[Start]:
@@ -205,18 +177,12 @@ def _spread(starts: Sequence[Start]) -> Sequence[Start]:
     return starts[::stride]
 
 
-def _strength(case: _Case, factor: float) -> float:
-    """Size of the strength at a factor, larger where the effect is stronger."""
-    value = abs(case.at(factor)[case.parameter])
-    return 1.0 / max(value, 1e-300) if case.above else value
-
-
-def _allowed(case: _Case, base: Fit) -> float:
+def _allowed(case: Case, base: Fit) -> float:
     """Rise of chi2 within which a strength is possible."""
     return (TIED if EFFECT[case.variant.effect].jumps else ONE_SIDED) * max(base.ratio**2, 1.0)
 
 
-def _foreseen(estimator: Estimator, base: Fit, case: _Case) -> _Foreseen | None:
+def _foreseen(estimator: Estimator, base: Fit, case: Case) -> _Foreseen | None:
     """At what strength of a start it is excluded while the base parameters follow linearly; None where at none.
 
     A change that goes by the strength, s u, leaves (r - s u)^2: least at u r / u^2, and by the square root of what is
@@ -257,22 +223,29 @@ def _moved(base: Fit, change: Signal) -> Signal:
 
 
 def _confirmed(estimator: Estimator, base: Fit, foreseen: _Foreseen) -> Limit | None:
-    """The limit where the base parameters do not make the strength possible; None where they always do.
+    """The limit where the base parameters do not make the strength possible; None where they always do."""
+    case = foreseen.case
+    held = Held(estimator, base, case)
+    value = held.value(_factor(held, base, foreseen))
+    return None if value is None else Limit(case.variant.effect, case.parameter, abs(value), case.above)
+
+
+def _factor(held: Held, base: Fit, foreseen: _Foreseen) -> float:
+    """The factor on the strength that is excluded, infinite where none is.
 
     One simulation tells whether all is as foreseen; if not, fits of the base parameters do.
     """
-    held = _Held(estimator, base, foreseen.case)
     way, still = (foreseen.point - base.solution.point) / foreseen.factor, np.zeros(base.solution.point.size)
     there = held.fit(foreseen.factor, way, 0)
     if there is not None and (missed := foreseen.missed(there)) < AS_FORESEEN * foreseen.rise:
         short = max(foreseen.possible - there.chi2 + missed, 0.0)
-        return held.limit(foreseen.factor * math.sqrt(1.0 + short / foreseen.allowed))
+        return foreseen.factor * math.sqrt(1.0 + short / foreseen.allowed)
     unmoved = held.fit(foreseen.factor, still, 0)
     nearer = there is not None and (unmoved is None or there.chi2 <= unmoved.chi2)
-    return held.limit(_excluded(held, foreseen, way if nearer else still))
+    return _excluded(held, foreseen, way if nearer else still)
 
 
-def _excluded(held: _Held, foreseen: _Foreseen, way: Signal) -> float:
+def _excluded(held: Held, foreseen: _Foreseen, way: Signal) -> float:
     """The factor at which the others do not make the strength possible, infinite where they always do.
 
     Of a strength that is possible they tell in what way they go for a larger one, and how much larger it may be. Where
@@ -295,72 +268,6 @@ def _excluded(held: _Held, foreseen: _Foreseen, way: Signal) -> float:
         if factor > foreseen.largest:
             break
     return excluded
-
-
-class _Held:
-    """An effect held at a strength, beside `base` parameters that follow.
-
-    What is counted from a base parameter is held as what it exceeds that, or the parameter would swallow it.
-    """
-
-    def __init__(self, estimator: Estimator, base: Fit, case: _Case) -> None:
-        self._estimator, self._base, self._case = estimator, base, case
-        self._effect, own = EFFECT[case.variant.effect], (*case.start.items(), *case.variant.fixed)
-        fixed = tuple((name, value) for name, value in own if name != case.parameter)
-        self._explanation = base.explanation.plus(Variant(case.variant.effect, (case.parameter,), fixed))
-        self._name = f"{case.variant.effect}.{case.parameter}"
-        self._place = self._explanation.names.index(self._name)
-
-    def nearest(self, factor: float, ways: Sequence[Signal], iterations: int, enough: float) -> Fit | None:
-        """The lowest of fits on some `ways`, or the first that comes to what is `enough`."""
-        fits: list[Fit] = []
-        for way in ways:
-            fit = self.fit(factor, way, iterations, enough)
-            if fit is not None:
-                fits.append(fit)
-                if fit.chi2 <= enough:
-                    break
-        return min(fits, key=lambda fit: fit.chi2, default=None)
-
-    def fit(self, factor: float, way: Signal, iterations: int, enough: float = -math.inf) -> Fit | None:
-        """The others fitted with a factor on the strength, from where they follow it on a `way`, by so much a unit.
-
-        None where there is no such model.
-        """
-        coordinates = self._estimator.coordinates(self._base.explanation)
-        point = self._base.solution.point + factor * way
-        others = {**self._base.values, **coordinates.values(np.clip(point, *coordinates.bounds))}
-        start = {**others, **self._values(factor, others)}
-        slopes = np.insert(self._base.solution.jacobian, self._place, 0.0, axis=1)
-        try:
-            return self._estimator.fit(
-                self._explanation,
-                start,
-                iterations,
-                held=self._name,
-                slopes=slopes if iterations else None,
-                enough=enough,
-            )
-        except InputError:
-            return None
-
-    def way(self, fit: Fit, factor: float) -> Signal:
-        """By how much for each unit of a factor the others have followed in a `fit`."""
-        return np.asarray(np.delete(fit.solution.point, self._place) - self._base.solution.point) / factor
-
-    def limit(self, factor: float) -> Limit | None:
-        """The strength at a factor, counted from `base`; None where it is beyond what is declared."""
-        declared = self._effect.parameter(self._case.parameter)
-        if not math.isfinite(factor):
-            return None
-        value = self._values(factor, self._base.model.values)[self._name]
-        if not declared.minimum <= value <= declared.maximum:
-            return None
-        return Limit(self._effect.id, self._case.parameter, abs(value), self._case.above)
-
-    def _values(self, factor: float, others: Mapping[str, float]) -> dict[str, float]:
-        own = (*self._case.at(factor).items(), *self._case.variant.fixed)
-        return self._effect.counted({f"{self._effect.id}.{name}": value for name, value in own}, others)
 
 
 def _squared(signal: Signal) -> float:

@@ -7,7 +7,8 @@ from support.fits import found_among
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.deadline import Deadline, OutOfTime
-from pierburg_ros.diagnosis.limits.limits import Limit, _Case, _Held, limits
+from pierburg_ros.diagnosis.limits.held import Case, Held
+from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.coordinates import Coordinates
@@ -61,8 +62,8 @@ def test_static_friction_is_held_by_what_it_exceeds_the_sliding_friction_by():
     estimator = Estimator(data_on(recording({}, duration=12.0, seed=3)), NOMINAL)
     base = estimator.fit(LUMPS)
     start = {"breakaway_torque": 0.02, "stribeck_velocity": 0.04}
-    case = _Case(Variant("static_friction", tuple(start)), start, "breakaway_torque")
-    fit = _Held(estimator, base, case).fit(0.5, 0.0 * base.solution.point, 4)
+    case = Case(Variant("static_friction", tuple(start)), start, "breakaway_torque")
+    fit = Held(estimator, base, case).fit(0.5, 0.0 * base.solution.point, 4)
     sliding, sticking = (fit.values[name] for name in ("coulomb_friction", "static_friction.breakaway_torque"))
     assert sliding != pytest.approx(base.values["coulomb_friction"], rel=1e-3)
     assert sticking - sliding == pytest.approx(0.01, rel=1e-6)

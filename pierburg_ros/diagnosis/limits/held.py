@@ -1,0 +1,113 @@
+"""An effect held at a strength while the base parameters follow: what they can make possible."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.coordinates import Coordinates
+from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.explanation import Variant
+from pierburg_ros.plant import Model
+
+
+@dataclass(frozen=True)
+class Case:
+    """One way in which an effect may act: its variant, a start, and the parameter of it that is its strength."""
+
+    variant: Variant
+    start: Start
+    parameter: str
+
+    @property
+    def above(self) -> bool:
+        """Whether a smaller value makes it stronger."""
+        return EFFECT[self.variant.effect].parameter(self.parameter).inverse
+
+    def at(self, factor: float) -> Start:
+        """The start with its strength multiplied."""
+        value = self.start[self.parameter]
+        return {**self.start, self.parameter: value / factor if self.above else value * factor}
+
+    def factors(self, nominal: Model, duration: float) -> tuple[float, float]:
+        """The least and the largest factor at which the strength is within what a search would look at."""
+        axis = Coordinates((f"{self.variant.effect}.{self.parameter}",), nominal, duration).axes[0]
+        own = abs(self.start[self.parameter])
+        low, high = max(axis.value(axis.lower), 0.0), axis.value(axis.upper)
+        return (own / high, own / low) if self.above else (low / own, high / own)
+
+    def strength(self, factor: float) -> float:
+        """Size of the strength at a factor, larger where the effect is stronger."""
+        value = abs(self.at(factor)[self.parameter])
+        return 1.0 / max(value, 1e-300) if self.above else value
+
+
+class Held:
+    """An effect held at a strength, beside `base` parameters that follow.
+
+    What is counted from a base parameter is held as what it exceeds that, or the parameter would swallow it.
+    """
+
+    def __init__(self, estimator: Estimator, base: Fit, case: Case) -> None:
+        self._estimator, self._base, self._case = estimator, base, case
+        self._effect, own = EFFECT[case.variant.effect], (*case.start.items(), *case.variant.fixed)
+        fixed = tuple((name, value) for name, value in own if name != case.parameter)
+        self._explanation = base.explanation.plus(Variant(case.variant.effect, (case.parameter,), fixed))
+        self._name = f"{case.variant.effect}.{case.parameter}"
+        self._place = self._explanation.names.index(self._name)
+
+    def nearest(self, factor: float, ways: Sequence[Signal], iterations: int, enough: float) -> Fit | None:
+        """The lowest of fits on some `ways`, or the first that comes to what is `enough`."""
+        fits: list[Fit] = []
+        for way in ways:
+            fit = self.fit(factor, way, iterations, enough)
+            if fit is not None:
+                fits.append(fit)
+                if fit.chi2 <= enough:
+                    break
+        return min(fits, key=lambda fit: fit.chi2, default=None)
+
+    def fit(self, factor: float, way: Signal, iterations: int, enough: float = -math.inf) -> Fit | None:
+        """The others fitted with a factor on the strength, from where they follow it on a `way`, by so much a unit.
+
+        None where there is no such model.
+        """
+        coordinates = self._estimator.coordinates(self._base.explanation)
+        point = self._base.solution.point + factor * way
+        others = {**self._base.values, **coordinates.values(np.clip(point, *coordinates.bounds))}
+        start = {**others, **self._values(factor, others)}
+        slopes = np.insert(self._base.solution.jacobian, self._place, 0.0, axis=1)
+        try:
+            return self._estimator.fit(
+                self._explanation,
+                start,
+                iterations,
+                held=self._name,
+                slopes=slopes if iterations else None,
+                enough=enough,
+            )
+        except InputError:
+            return None
+
+    def way(self, fit: Fit, factor: float) -> Signal:
+        """By how much for each unit of a factor the others have followed in a `fit`."""
+        return np.asarray(np.delete(fit.solution.point, self._place) - self._base.solution.point) / factor
+
+    def value(self, factor: float) -> float | None:
+        """The strength at a factor, counted from `base`; None where it is beyond what is declared, or infinite."""
+        declared = self._effect.parameter(self._case.parameter)
+        if not math.isfinite(factor):
+            return None
+        value = self._values(factor, self._base.model.values)[self._name]
+        return value if declared.minimum <= value <= declared.maximum else None
+
+    def _values(self, factor: float, others: Mapping[str, float]) -> dict[str, float]:
+        own = (*self._case.at(factor).items(), *self._case.variant.fixed)
+        return self._effect.counted({f"{self._effect.id}.{name}": value for name, value in own}, others)
