@@ -49,13 +49,17 @@ def begun(model: Model, shown: NDArray[np.float64], quantity: str) -> NDArray[np
 
 def turned(model: Model, time: ArrayLike, measured: ArrayLike, quantity: str) -> NDArray[np.float64]:
     """Angle [rad] at each `time` [s] that the `measured` values show; of a speed counted from the first sample."""
-    shown = decoded(model, measured, quantity)
+    return way(decoded(model, measured, quantity), time, quantity)
+
+
+def way(values: NDArray[np.float64], time: ArrayLike, quantity: str) -> NDArray[np.float64]:
+    """`values` of a measured quantity, or what a speed adds up to from the first `time` [s] on."""
     if quantity != "speed":
-        return shown
+        return values
     # takes a quarter of a second to load
     from scipy.integrate import cumulative_trapezoid
 
-    return np.asarray(cumulative_trapezoid(shown, time, initial=0.0))
+    return np.asarray(cumulative_trapezoid(values, time, initial=0.0))
 
 
 def angle_per_unit(model: Model) -> float:

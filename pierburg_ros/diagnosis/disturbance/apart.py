@@ -178,7 +178,7 @@ def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recor
     if span is None:
         return None
     if told := with_open_bridge(data, estimator, fit, recording, span):
-        return told
+        return told[:2]
     omission = Omission(0, span, NOTHING)
     rest = in_parts(data_of([recording], estimator.nominal, (omission,)))
     left = Estimator(rest, estimator.nominal).fit(fit.explanation, fit.values, BRIEF)
@@ -188,15 +188,18 @@ def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recor
 
 def with_open_bridge(
     data: Data, estimator: Estimator, fit: Fit, recording: Recording, span: Span
-) -> tuple[Data, Fit] | None:
+) -> tuple[Data, Fit, Recording] | None:
     """The recording with the bridge open for a while, where that is all that an explanation lacks in a `span` [s].
 
-    With it the explanation fitted again. None where it lacks more, or where the state of the bridge was logged.
+    As evidence, with it the explanation fitted again, and as if the bridge had been logged. None where the explanation
+    lacks more, or where the state of the bridge was logged.
     """
     bridge = opened(data, fit.model, span)
     if bridge is None:
         return None
-    return _known(data, estimator, fit, bridge.known(recording), bridge.remark)
+    known = bridge.known(recording)
+    told = _known(data, estimator, fit, known, bridge.remark)
+    return (*told, known) if told else None
 
 
 def _known(data: Data, estimator: Estimator, fit: Fit, known: Recording, remark: str) -> tuple[Data, Fit] | None:
@@ -217,13 +220,8 @@ def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> tuple[Data
         return None
     rest, estimator, values = without(found.chosen.explanation, load), found.estimator, found.chosen.values
     start, end = (values[name] for name in _moments(load))
-    fit = estimator.at(rest, values)
-    bridge = opened(found.data, fit.model, (start, end))
-    if bridge is None:
-        return None
-    known = bridge.known(recordings[0])
-    told = _known(found.data, estimator, fit, known, bridge.remark)
-    return (told[0], known) if told else None
+    told = with_open_bridge(found.data, estimator, estimator.at(rest, values), recordings[0], (start, end))
+    return (told[0], told[2]) if told else None
 
 
 def _passing(variant: Variant) -> bool:

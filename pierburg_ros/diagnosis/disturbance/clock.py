@@ -86,27 +86,24 @@ def other_clock(data: Data, model: Model, alone: bool = False) -> OtherClock | N
     """
     own, time = data.scales.time, np.concatenate([run.time for run in data.runs])
     first, duration = float(time[0]), float(time[-1] - time[0])
-    late = np.zeros(2)
-    for halved in range(HALVINGS, -1, -1):
-        part = duration / 2**halved
-        cost = partial(_cost, _until(data, first + part, own), model, first, first + part)
-        if halved == HALVINGS:
-            grid = own * np.arange(-FARTHEST, FARTHEST + 0.5 * GRID, GRID)
-            late = np.full(2, min(grid, key=lambda each: cost(np.full(2, each))))
-        late, left = exact(cost, late, 0.5 * GRID * own, own)
+    parts = duration / 2.0 ** np.arange(HALVINGS, -1, -1)
+    costs = [partial(_cost, _until(data, first + part), model, first, first + part) for part in parts]
+    grid = own * np.arange(-FARTHEST, FARTHEST + 0.5 * GRID, GRID)
+    begin, rate = min(grid, key=lambda late: costs[0](np.full(2, late))), 0.0
+    for part, cost in zip(parts, costs, strict=True):
+        late, left = exact(cost, np.array([begin, begin + rate * part]), 0.5 * GRID * own, own)
         if alone and left > ALONE * np.count_nonzero(time < first + part):
             return None
-        if halved:
-            late[1] += late[1] - late[0]
+        begin, rate = late[0], (late[1] - late[0]) / part
     clock = OtherClock(first, first + duration, *map(float, late))
-    if left > LEFT * cost(np.zeros(2)) or not clock.wrong(float(np.median(np.diff(time)))):
+    if left > LEFT * costs[-1](np.zeros(2)) or not clock.wrong(float(np.median(np.diff(time)))):
         return None
     return clock
 
 
-def _until(data: Data, moment: float, own_time: float) -> Data:
-    """What lies before a `moment` [s], of runs that begin well before it."""
-    begun = [run for run in data.runs if run.time[0] + own_time < moment]
+def _until(data: Data, moment: float) -> Data:
+    """What lies before a `moment` [s]."""
+    begun = (run for run in data.runs if run.time[0] < moment)
     return replace(data, runs=tuple(run.cut(moment - run.time[0]) for run in begun))
 
 

@@ -14,7 +14,7 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
-from pierburg_ros.plant.decode import decoded, turned
+from pierburg_ros.plant.decode import decoded, turned, way
 from pierburg_ros.plant.simulate import motor_torque
 from pierburg_ros.plant.torques.missing import missing
 
@@ -107,7 +107,8 @@ def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
     per_unit, instant = data.angle_per_unit / own.angle, INSTANT * own.time
     grid = np.arange(run.time[0], run.time[-1], instant)
     simulated, measured = (
-        _averaged(run.time, _way(run, values), grid) for values in (run.simulated(model), run.measured)
+        _averaged(run.time, way(values, run.time, run.quantity), grid)
+        for values in (run.simulated(model), run.measured)
     )
     damping = braking(model) / own.of_unit("N.m.s/rad")
     stiffness = value.get("spring_stiffness", 0.0) / own.of_unit("N.m/rad")
@@ -125,16 +126,6 @@ def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
         gear_ratio=value["gear_ratio"] * own.angle,
         end=float(run.time[-1]) / own.time,
     )
-
-
-def _way(run: Run, values: Signal) -> Signal:
-    """Measured `values`, or what a measured speed adds up to."""
-    if run.quantity != "speed":
-        return values
-    # takes a quarter of a second to load
-    from scipy.integrate import cumulative_trapezoid
-
-    return np.asarray(cumulative_trapezoid(values, run.time, initial=0.0))
 
 
 def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:

@@ -62,6 +62,7 @@ class Held:
         self._explanation = base.explanation.plus(Variant(case.variant.effect, (case.parameter,), fixed))
         self._name = f"{case.variant.effect}.{case.parameter}"
         self._place = self._explanation.names.index(self._name)
+        self._slopes = np.insert(base.solution.jacobian, self._place, 0.0, axis=1)
 
     def nearest(self, factor: float, ways: Sequence[Signal], iterations: int, enough: float) -> Fit | None:
         """The lowest of fits on some `ways`, or the first that comes to what is `enough`."""
@@ -83,14 +84,13 @@ class Held:
         point = self._base.solution.point + factor * way
         others = {**self._base.values, **coordinates.values(np.clip(point, *coordinates.bounds))}
         start = {**others, **self._values(factor, others)}
-        slopes = np.insert(self._base.solution.jacobian, self._place, 0.0, axis=1)
         try:
             return self._estimator.fit(
                 self._explanation,
                 start,
                 iterations,
                 held=self._name,
-                slopes=slopes if iterations else None,
+                slopes=self._slopes if iterations else None,
                 enough=enough,
             )
         except InputError:

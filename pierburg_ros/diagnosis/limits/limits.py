@@ -72,13 +72,14 @@ class Limits:
 class _Foreseen:
     """What linear steps foresee of a case: the factor on its strength that is excluded, and what is there.
 
-    The base parameters have followed to a `point`, and the `residual` there has a chi2 that is just `possible`:
-    `allowed` above the least for any strength. Factors beyond the `largest` are not looked at.
+    A unit of the factor makes a `change` of the residual. With what the base parameters do to follow it, the `residual`
+    there has a chi2 that is just `possible`: `allowed` above the least for any strength. Factors beyond the `largest`
+    are not looked at.
     """
 
     case: Case
     factor: float
-    point: Signal
+    change: Signal
     residual: Signal
     possible: float
     allowed: float
@@ -210,9 +211,8 @@ def _foreseen(estimator: Estimator, base: Fit, case: Case) -> _Foreseen | None:
         factor = following
         if settled:
             break
-    point = base.solution.point + factor * _moved(base, change)
     possible = base.chi2 - size * best**2 + allowed
-    return _Foreseen(case, factor, point, base.solution.residual - factor * unit, possible, allowed, largest)
+    return _Foreseen(case, factor, change, base.solution.residual - factor * unit, possible, allowed, largest)
 
 
 def _moved(base: Fit, change: Signal) -> Signal:
@@ -235,7 +235,8 @@ def _factor(held: Held, base: Fit, foreseen: _Foreseen) -> float:
 
     One simulation tells whether all is as foreseen; if not, fits of the base parameters do.
     """
-    way, still = (foreseen.point - base.solution.point) / foreseen.factor, np.zeros(base.solution.point.size)
+    way = _moved(base, foreseen.change)
+    still = np.zeros_like(way)
     there = held.fit(foreseen.factor, way, 0)
     if there is not None and (missed := foreseen.missed(there)) < AS_FORESEEN * foreseen.rise:
         short = max(foreseen.possible - there.chi2 + missed, 0.0)

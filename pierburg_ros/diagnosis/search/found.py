@@ -163,6 +163,7 @@ def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fi
         fit = estimator.fit(chosen.explanation, chosen.values)
         if jumps(fit.explanation) and not chosen.refined:
             fit = refined(estimator, fit)
+        # its fits are spread over the cores, not the columns of each
         return lowest_with_estimates(Estimator(estimator.data, found.nominal), fit, pool.map)
 
 

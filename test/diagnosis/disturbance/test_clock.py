@@ -43,6 +43,13 @@ def test_physics_is_no_other_clock(changes):
     assert other_clock(data_on(recording(changes)), NOMINAL) is None
 
 
+@pytest.mark.parametrize("duration", [0.05, 1.0])
+def test_a_recording_may_be_shorter_than_sixteen_of_the_actuators_own_times(duration):
+    data = data_on(recording({}, duration=duration))
+    assert duration < 16 * data.scales.time
+    assert other_clock(data, NOMINAL, alone=True) is None
+
+
 def test_the_true_times_undo_the_stamps():
     given = stamped(0.02, 0.12)
     known = OtherClock(FIRST, LAST, 0.02, 0.12).known(given)

@@ -154,6 +154,7 @@ def test_what_leads_by_far_is_grown_before_others_of_its_size(
 
 
 def test_ripples_wait_for_promising_pairs_and_come_before_drifts_are_grown(short: Data, pool: Executor) -> None:
+    """Beside a drift they are found as well as alone."""
 
     class Leading(Grown):
         def _fit_most_promising(self, seeds: object) -> None:
