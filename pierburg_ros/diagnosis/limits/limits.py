@@ -106,8 +106,8 @@ def limits(
 
     The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
     recordings tell apart follow (profile likelihood): linearly, and fitted where a simulation at the limit shows that
-    this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. Of several places, rhythms or phases at which an effect may act, the
-    weakest limit counts. At the `deadline` those found by then are kept.
+    this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. Of several places, rhythms or
+    phases at which an effect may act, the weakest limit counts. At the `deadline` those found by then are kept.
     """
     deadline = deadline or Deadline()
     strengths: dict[tuple[str, str], list[Case]] = {}
