@@ -27,10 +27,14 @@ PLAYER = Path(__file__).parents[2] / "examples" / "play_duty.py"
 MODEL = Model.nominal(read_actuator("pierburg"))
 
 
-@pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
-    """A recording of a closed loop through three setpoints, whose nodes have ended."""
-    folder = tmp_path_factory.mktemp("closed_loop")
+@pytest.fixture
+def recorded(tmp_path):
+    """A recording of a closed loop through three setpoints, whose nodes have ended.
+
+    Made for each test, so that one that is tried again does not meet what a starved machine has lost.
+    """
+    folder = tmp_path / "closed_loop"
+    folder.mkdir()
     with Graph(free_domain(), folder) as graph:
         hall_voltage = graph.watch("hall_voltage", Float64)
         active = graph.watch("active_setpoint", Float64)
