@@ -33,18 +33,33 @@ class Deadline:
         self._seconds = math.inf if seconds is None else seconds
         self._begun, self._worked = time.monotonic(), time.process_time()
         self._parent: Deadline | None = None
+        self._told = True
         self.stopped = False
 
     @property
     def left(self) -> float:
         """Time that is left at least [s], not below 0; infinite where there is no limit."""
+        return max(self._seconds - self.spent, 0.0)
+
+    @property
+    def spent(self) -> float:
+        """Time that has gone by [s]."""
         gone, worked = time.monotonic() - self._begun, time.process_time() - self._worked
-        return max(self._seconds - max(min(gone, worked), gone / SLOWEST), 0.0)
+        return max(min(gone, worked), gone / SLOWEST)
 
     def part(self, share: float) -> Deadline:
         """One that ends when this `share` of what is left of it is over; where that stops, it is noted here too."""
         part = Deadline(None if math.isinf(self._seconds) else share * self.left)
         part._parent = self
+        return part
+
+    def at_most(self, seconds: float) -> Deadline:
+        """One that ends after so many `seconds`, or with this one; without end where this one has none.
+
+        For what can be left undone: that its time was over is not noted here, but an interrupt is.
+        """
+        part = Deadline(None if math.isinf(self._seconds) else min(seconds, self.left))
+        part._parent, part._told = self, seconds >= self.left
         return part
 
     def check(self) -> None:
@@ -70,5 +85,5 @@ class Deadline:
         self.stopped = True
         if interrupted:
             self._seconds = -math.inf
-        if self._parent is not None:
+        if self._parent is not None and (interrupted or self._told):
             self._parent._stop(interrupted)

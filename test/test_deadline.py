@@ -42,6 +42,20 @@ def test_a_part_that_is_over_leaves_time_for_the_rest():
     assert deadline.stopped and deadline.attempt(lambda: 3, otherwise=0) == 3
 
 
+def test_what_can_be_left_undone_is_not_noted_when_its_own_time_is_over():
+    for seconds, left, noted in ((0.0, 1000.0, False), (1000.0, 0.0, True)):
+        deadline = Deadline(left)
+        assert deadline.at_most(seconds).attempt(pytest.fail, otherwise=1) == 1
+        assert deadline.stopped == noted
+    assert math.isinf(Deadline().at_most(1.0).left)
+
+
+def test_an_interrupt_of_what_can_be_left_undone_is_noted():
+    deadline = Deadline(1000.0)
+    assert deadline.at_most(10.0).attempt(interrupted, otherwise=1) == 1
+    assert deadline.stopped and deadline.left == 0.0
+
+
 def test_who_waits_for_workers_waits_no_longer_than_that():
     release = threading.Event()
     """Nor where nothing works: the time that has gone by counts too, if less."""

@@ -124,18 +124,19 @@ class Estimator:
         tolerance: float = TOLERANCE,
         slopes: Signal | None = None,
         enough: float = -np.inf,
+        reach: float = np.inf,
     ) -> Fit:
         """Best values of an explanation from `start`, dotted values; what it lacks starts nominal.
 
         A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not
         decide; it ends with the forgiving cost and wants an ordinary fit after it. `steps` are the differences
         of the Jacobian, shape (free quantities,), in the coordinates of the search. The quantity `held` stays at its
-        start. A descent ends where an iteration lowers the cost by less than `tolerance` of it, or where the cost is
-        `enough`; it begins with known `slopes`, if given.
+        start, the others within their `reach` of it, in coordinates. A descent ends where an iteration lowers the cost
+        by less than `tolerance` of it, or where the cost is `enough`; it begins with known `slopes`, if given.
         """
         coordinates = self.coordinates(explanation)
         begin = coordinates.point({**self.nominal.values, **(start or {})})
-        lower, upper = (bound.copy() for bound in coordinates.bounds)
+        lower, upper = (np.clip(bound, begin - reach, begin + reach) for bound in coordinates.bounds)
         if held is not None:
             place = explanation.names.index(held)
             lower[place] = upper[place] = begin[place]

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.plant import Inputs, Model
@@ -263,6 +262,8 @@ def _least_squares(known: Signal, wanted: Signal) -> Signal:
 
 def _next_order(cosine: Signal, sine: Signal, highest: int, taken: list[int]) -> int:
     """The order, none that is `taken`, that stands out most from those beside it; 0 where chance raises one so far."""
+    from scipy.ndimage import median_filter  # takes long to load, and most actuators need none
+
     power = np.square(cosine) + np.square(sine)
     usual = median_filter(power, 2 * NEIGHBOURS + 1, mode="nearest") / math.log(2.0)
     height = power / (usual + 1e-300)

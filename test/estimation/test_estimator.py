@@ -46,6 +46,14 @@ def test_what_is_held_stays_and_the_others_give_way(drifted: Estimator) -> None:
     assert fit.values["armature_resistance"] < free.values["armature_resistance"]
 
 
+def test_no_quantity_goes_beyond_its_reach(drifted: Estimator) -> None:
+    """Nominal values stand at 0 in coordinates of the logarithm, where a search begins."""
+    free, bound = drifted.fit(DRIFTS), drifted.fit(DRIFTS, reach=0.02)
+    assert np.max(np.abs(free.solution.point)) > 0.02
+    assert np.max(np.abs(bound.solution.point)) == pytest.approx(0.02, rel=1e-9)
+    assert bound.chi2 > free.chi2
+
+
 def test_a_fit_that_forgives_is_not_led_astray_by_a_slip() -> None:
     """For two seconds of twelve the signal is off by half a volt: least squares give in to that, logarithms do not."""
     plain = recording(TRUE, duration=12.0)

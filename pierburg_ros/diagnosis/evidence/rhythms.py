@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.torque_balance import finest
@@ -86,7 +85,7 @@ def _power(place: Signal, torque: Signal, frequencies: Signal) -> Signal:
 
 def _beside(power: Signal) -> Signal:
     """What is usual beside each frequency: the mean of a spectrum whose median is that of the neighbours."""
-    return (
-        np.asarray(median_filter(power, min(2 * NEIGHBOURS * FINE + 1, power.size), mode="nearest")) / math.log(2.0)
-        + 1e-300
-    )
+    from scipy.ndimage import median_filter  # takes long to load
+
+    width = min(2 * NEIGHBOURS * FINE + 1, power.size)
+    return np.asarray(median_filter(power, width, mode="nearest")) / math.log(2.0) + 1e-300

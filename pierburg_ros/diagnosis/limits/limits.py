@@ -45,6 +45,10 @@ ATTEMPTS = 6
 """Strengths at which the others are fitted before the effect counts as not excluded. Work: each costs half a brief
 descent; together up to 58 times the linear estimate."""
 
+SHARE, LEAST = 0.25, 5.0
+"""Time that limits take at most, as a share of that before them, and [s] in any case. Work: they take 1 to 3 s, but
+where an effect makes the model chatter one of them took 75 s after a search of 3 s; not varied."""
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -107,9 +111,11 @@ def limits(
     The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
     recordings tell apart follow (profile likelihood): linearly, and fitted where a simulation at the limit shows that
     this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. Of several places, rhythms or
-    phases at which an effect may act, the weakest limit counts. At the `deadline` those found by then are kept.
+    phases at which an effect may act, the weakest limit counts. At the `deadline`, or once they have taken their share
+    of the time, those found by then are kept.
     """
     deadline = deadline or Deadline()
+    own = deadline.at_most(max(SHARE * deadline.spent, LEAST))
     strengths: dict[tuple[str, str], list[Case]] = {}
     for case in _cases(found, final):
         if case.variant.effect not in final.explanation.effects:
@@ -120,7 +126,7 @@ def limits(
     tell = staged(progress, "what is ruled out", len(strengths))
 
     def test() -> None:
-        with workers(jobs, deadline) as pool:
+        with workers(jobs, own) as pool:
             estimator, base = next(iter(pool.map(lambda final: _base(found, final), [final])))
 
             def limit(key: tuple[str, str]) -> None:
@@ -130,7 +136,7 @@ def limits(
             for _ in pool.map(limit, slow_first):
                 pass
 
-    deadline.attempt(test, None)
+    own.attempt(test, None)
     set_by = [limit for key in strengths if (limit := tested.get(key)) is not None]
     missing = dict.fromkeys(effect for effect, parameter in strengths if (effect, parameter) not in tested)
     return Limits(set_by, list(missing))

@@ -221,9 +221,7 @@ def untested(effects: Sequence[str]) -> list[str]:
     if not effects:
         return []
     listed = ", ".join(numbers.words(effect) for effect in effects)
-    return [
-        f"There was no time to look how much of these is ruled out: {listed}. Give more with --budget or --thorough."
-    ]
+    return [f"There was no time to look how much of these is ruled out: {listed}. Give it by --thorough."]
 
 
 def _separating(name: str, tie: Sequence[str], stops: bool) -> str:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
 
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
@@ -42,29 +45,74 @@ def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Pr
     and a descent hardly moves. By the squared error alone it goes far, but bends to whatever remains. All that is found
     is fitted with its own discrepancy, and the likeliest counts.
     """
-    own, values = base.fit.explanation, base.fit.values
     beside, alone = estimator_beside(data, nominal, base.discrepancy), Estimator(data, nominal)
-    ways = [(beside, beside.restated(base.fit)), (alone, alone.fit(own, values, BRIEF))]
-    found = [fit for estimator, begin in ways for fit in _larger(estimator, begin, pool, progress)]
-    return sorted(plausible(found, data, nominal, pool), key=lambda each: each.cost)
+    own, values = base.fit.explanation, base.fit.values
+    ways = [_Way(beside, beside.restated(base.fit), progress), _Way(alone, alone.fit(own, values, BRIEF), progress)]
+    # each step of both is handed out at once, so that no core waits for the other way
+    promises = [pool.map(way.promise, way.tasks) for way in ways]
+    followed = [_lowest(filter(None, each), FOLLOWED) for each in promises]
+    fitted = [pool.map(way.fitted, each) for way, each in zip(ways, followed, strict=True)]
+    ahead = [_lowest(each, SETTLED) for each in fitted]
+    found = [pool.map(way.begun_anew, each) for way, each in zip(ways, ahead, strict=True)]
+    return sorted(plausible(itertools.chain(*found), data, nominal, pool), key=lambda each: each.cost)
 
 
-def _larger(estimator: Estimator, base: Fit, pool: Executor, progress: Progress) -> list[Fit]:
-    """The best fits of explanations with one quantity more than `base`, as an `estimator` counts."""
-    drifts, known = drifting(estimator.nominal), starts_of(estimator.data, base.model)
-    tasks: list[tuple[Addition, list[Start]]] = [*((name, []) for name in drifts), *known.items()]
-    promises = [each for each in pool.map(lambda task: _promise(estimator, base, drifts, *task), tasks) if each]
+@dataclass(frozen=True)
+class _Way:
+    """One way to look for explanations with one quantity more than `base`: as an `estimator` counts."""
 
-    def fitted(promise: _Promise) -> Fit:
-        progress(f"{promise.explanation.label}, beside what remains")
-        return estimator.fit(promise.explanation, promise.start, BRIEF)
+    estimator: Estimator
+    base: Fit
+    progress: Progress
 
-    def again(fit: Fit) -> Fit:
-        return anew(estimator, fit, {one: known[one] for one in base.explanation.variants if one in known})
+    @cached_property
+    def drifts(self) -> tuple[str, ...]:
+        """Names of what may drift."""
+        return drifting(self.estimator.nominal)
 
-    followed = sorted(promises, key=lambda promise: promise.chi2)[:FOLLOWED]
-    fits = sorted(pool.map(fitted, followed), key=lambda fit: fit.chi2)[:SETTLED]
-    return list(pool.map(again, fits))
+    @cached_property
+    def starts(self) -> dict[Variant, list[Start]]:
+        """What effects may be added, each with its starts."""
+        return starts_of(self.estimator.data, self.base.model)
+
+    @property
+    def tasks(self) -> list[tuple[Addition, list[Start]]]:
+        """All that may be added."""
+        return [*((name, []) for name in self.drifts), *self.starts.items()]
+
+    def promise(self, task: tuple[Addition, list[Start]]) -> _Promise | None:
+        """What one linear step along an addition promises; None where it cannot be added."""
+        addition, starts = task
+        fit, own = self.base, self.base.explanation
+        larger = (
+            Explanation((*own.drifted, addition), own.variants) if isinstance(addition, str) else own.plus(addition)
+        )
+        explanation = canonical(larger, self.drifts)
+        if explanation is None:
+            return None
+        if isinstance(addition, str):
+            return _Promise(promised_by_drift(self.estimator.at(explanation, fit.values)), explanation, fit.values)
+        ways = promised(self.estimator, fit, addition, starts)
+        return _Promise(ways[0][0], explanation, {**fit.values, **ways[0][1]}) if ways else None
+
+    def fitted(self, promise: _Promise) -> Fit:
+        """The brief fit that was promised."""
+        self.progress(f"{promise.explanation.label}, beside what remains")
+        return self.estimator.fit(promise.explanation, promise.start, BRIEF)
+
+    def begun_anew(self, fit: Fit) -> Fit:
+        """`fit`, or a better one with an effect of the base begun anew."""
+        return anew(
+            self.estimator, fit, {one: self.starts[one] for one in self.base.explanation.variants if one in self.starts}
+        )
+
+
+_Counted = TypeVar("_Counted", Fit, _Promise)
+
+
+def _lowest(found: Iterable[_Counted], most: int) -> list[_Counted]:
+    """Those that leave least, at most so many."""
+    return sorted(found, key=lambda each: each.chi2)[:most]
 
 
 def anew(estimator: Estimator, fit: Fit, starts: Mapping[Variant, list[Start]]) -> Fit:
@@ -80,18 +128,3 @@ def anew(estimator: Estimator, fit: Fit, starts: Mapping[Variant, list[Start]]) 
             again = [estimator.fit(fit.explanation, {**rest.values, **start}, BRIEF) for _, start in ways]
             best = min((best, *again), key=lambda each: each.chi2)
     return best
-
-
-def _promise(
-    estimator: Estimator, fit: Fit, drifts: tuple[str, ...], addition: Addition, starts: list[Start]
-) -> _Promise | None:
-    """What one linear step along an addition promises; None where it cannot be added."""
-    own = fit.explanation
-    larger = Explanation((*own.drifted, addition), own.variants) if isinstance(addition, str) else own.plus(addition)
-    explanation = canonical(larger, drifts)
-    if explanation is None:
-        return None
-    if isinstance(addition, str):
-        return _Promise(promised_by_drift(estimator.at(explanation, fit.values)), explanation, fit.values)
-    ways = promised(estimator, fit, addition, starts)
-    return _Promise(ways[0][0], explanation, {**fit.values, **ways[0][1]}) if ways else None

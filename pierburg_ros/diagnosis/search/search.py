@@ -242,8 +242,9 @@ class Search:
     def _likeliest_accounts_for_all(self) -> bool:
         """Whether what is likeliest beside a remainder leaves nothing, fitted as if there were none; asked once.
 
-        It is not refined where something else comes far nearer. Where it leaves too much, and nothing comes near the
-        noise either, a search that resigns does.
+        It is not refined where something else comes far nearer. A search that resigns does so here where no event jumps
+        in what comes nearest: its cost is smooth, and what linear steps promise has been fitted. It does as well where
+        too much is left, and nothing comes near the noise.
         """
         if self.beside is not None:
             return False
@@ -258,12 +259,17 @@ class Search:
                 return True
         if self.beam.resigns:
             self._until = self._told + AGAIN * before
-        self.resigned = self.beam.resigns and not self.beside.open and self._least() >= NEARLY
+        in_vain = not self.beside.open and self._least() >= NEARLY
+        self.resigned = self.beam.resigns and (in_vain or not jumps(self._nearest().explanation))
         return False
+
+    def _nearest(self) -> Fit:
+        """What leaves least so far, of any size."""
+        return min(list(self.fits.values()), key=lambda fit: fit.chi2)
 
     def _least(self) -> float:
         """The least training error over noise so far."""
-        return min((fit.ratio for fit in list(self.fits.values())), default=np.inf)
+        return self._nearest().ratio
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         """Fit ripples of the load on top of the `seeds`, once, by the way that leads to them where the shaft slips."""

@@ -69,7 +69,8 @@ def test_static_friction_is_held_by_what_it_exceeds_the_sliding_friction_by():
     assert sticking - sliding == pytest.approx(0.01, rel=1e-6)
 
 
-def test_limits_found_before_the_time_is_over_are_kept_and_the_others_named(clean):
+@pytest.mark.parametrize("own", [True, False], ids=["their own", "that of all"])
+def test_limits_found_before_the_time_is_over_are_kept_and_the_others_named(clean, own, monkeypatch):
     begun: list[str] = []
 
     def stop_at_the_third(tried: str) -> None:
@@ -78,12 +79,13 @@ def test_limits_found_before_the_time_is_over_are_kept_and_the_others_named(clea
             raise OutOfTime
 
     deadline = Deadline(1000.0)
+    monkeypatch.setattr("pierburg_ros.diagnosis.limits.limits.LEAST", 100.0 if own else 10_000.0)
     found, nominal = nothing_named({}, seed=3)
     kept = limits(found, nominal, stop_at_the_third, jobs=1, deadline=deadline)
     whole = limits(found, nominal, jobs=1).found
     assert kept.found == [limit for limit in whole if limit.effect in begun[:2]] != []
     assert begun[2] in kept.untested and set(kept.untested).isdisjoint(begun[:2])
-    assert deadline.stopped
+    assert deadline.stopped == (not own)
 
 
 def test_what_is_late_has_no_limit_behind_a_filter_of_the_input(clean):

@@ -215,15 +215,26 @@ def test_a_search_that_resigns_grows_nothing_in_turn(short: Data, pool: Executor
     assert found.seeds == [NOTHING]
 
 
+STICKS, LAGS = (Explanation((), (Variant(one, ("x",)),)) for one in ("static_friction", "sensor_lag"))
+
+
 @pytest.mark.parametrize(
-    ("left", "beside", "resigned"),
-    [(5000.0, 30.0, True), (100.0, 30.0, False), (5000.0, 3.0, False), (5000.0, 1.0, False)],
+    ("nearest", "left", "beside", "resigned"),
+    [
+        (STICKS, 5000.0, 30.0, True),
+        (STICKS, 100.0, 30.0, False),
+        (STICKS, 5000.0, 3.0, False),
+        (STICKS, 5000.0, 1.0, False),
+        (LAGS, 100.0, 30.0, True),
+        (LAGS, 100.0, 3.0, True),
+        (LAGS, 100.0, 1.0, False),
+    ],
 )
-def test_it_resigns_where_much_is_left_that_nothing_accounts_for(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, left: float, beside: float, resigned: bool
+def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_no_event_jumps(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, nearest: Explanation, left: float, beside: float, resigned: bool
 ) -> None:
     """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted by itself, leaves `beside` noises."""
-    reached = made_up(ONES[0], 1.0, NOMINAL)
+    reached = made_up(nearest, 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, beside, NOMINAL)))
@@ -242,7 +253,7 @@ def test_it_resigns_after_as_much_work_as_it_had_done_before_it_asked(
     empty: Search, monkeypatch: pytest.MonkeyPatch, resigns: bool, left: float, further: int, resigned: bool
 ) -> None:
     """After twenty trials it is asked, which takes fifty, and then tries further; the best leaves so much."""
-    reached = made_up(ONES[0], left, NOMINAL)
+    reached = made_up(STICKS, left, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), reached.solution.residual.size)
 
     def tried(times: int) -> None:
