@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import Annotated
 
 import typer
@@ -23,6 +25,9 @@ from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
 from pierburg_ros.library.reading import read
 from pierburg_ros.recording import Recording
+
+DRAWING = ("pierburg_ros.diagnosis.report.page", "pierburg_ros.diagnosis.report.picture")
+"""Modules that only the results need."""
 
 
 def diagnose(
@@ -69,6 +74,8 @@ def diagnose(
         if signals is None or simulation_signals is not None:
             raise
         raise InputError(f"{error} Or give your simulator's recordings a map: --simulation-signals FILE.") from None
+    # it takes a second to load what draws the results: beside the search, whose compiled code leaves room for it
+    Thread(target=lambda: [import_module(each) for each in DRAWING]).start()
     with output_folder(output) as folder:
         diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
         diagnosis.write_into(folder)

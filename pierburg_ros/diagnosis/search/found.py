@@ -21,7 +21,7 @@ from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.intervals import Estimate, lowest_with_estimates
-from pierburg_ros.estimation.refinement import refined
+from pierburg_ros.estimation.refinement import lowered
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
@@ -154,15 +154,15 @@ def settled_on(found: Found, fit: Fit, jobs: int | None, deadline: Deadline) -> 
 def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
     """The chosen explanation fitted to all samples but those that test, and its intervals.
 
-    Where events jump, other local minima are searched, unless the search has: a fit may reach the noise in one that is
-    not the lowest.
+    Where events jump, minima near by are searched, unless the search has looked further: a fit may reach the noise in
+    one that is not the lowest. Far away there is none that is lower by more than chance.
     """
     chosen = found.chosen
     with workers(jobs, deadline) as pool:
         estimator = Estimator(with_validation(found.data), found.nominal, pool.map)
         fit = estimator.fit(chosen.explanation, chosen.values)
         if jumps(fit.explanation) and not chosen.refined:
-            fit = refined(estimator, fit)
+            fit = lowered(estimator, fit)
         # its fits are spread over the cores, not the columns of each
         return lowest_with_estimates(Estimator(estimator.data, found.nominal), fit, pool.map)
 

@@ -137,21 +137,18 @@ class Search:
                 return
         seeds = self._seeds(best)
         if len(seeds) > 1:
-            had_resigned = self.resigned
             self._fit_most_promising(seeds)
-            self._lead_tried_harder(seeds, size + 1)
+            if not self.resigned:
+                self._lead_tried_harder(seeds, size + 1)
             if self._complete(size + 1) or self._followed(best) or self._likeliest_accounts_for_all():
                 return
-            if not self.resigned and self._drifts_expanded(seeds):
+            if self.resigned or self._drifts_expanded(seeds):
                 return
-            if not had_resigned:
-                self.refine(self.of_size(size))
+            self.refine(self.of_size(size))
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
             seeds = self._seeds(best)
-            if self.resigned:
-                return
         for seed in seeds:
             if self._complete(size + 1) or self.exhausted:
                 return
