@@ -239,24 +239,25 @@ class Search:
     def _likeliest_accounts_for_all(self) -> bool:
         """Whether what is likeliest beside a remainder leaves nothing, fitted as if there were none; asked once.
 
-        It is not refined where something else comes far nearer. A search that resigns does so here where no event jumps
-        in what comes nearest: its cost is smooth, and what linear steps promise has been fitted. It does as well where
-        too much is left, and nothing comes near the noise.
+        It is not refined where something else comes far nearer. A search that resigns does so here where too much is
+        left and nothing comes near the noise, without refining anything. It does as well where no event jumps in what
+        comes nearest: its cost is smooth, and what linear steps promise has been fitted.
         """
         if self.beside is not None:
             return False
         before = self._told
         self.beside = supported(self.data, self.nominal, list(self.fits.values()), self.pool, self.progress)
         reached = self.beside.reached.fit
-        if reached.explanation.size <= self.beam.depth:
-            fit = self.add(reached.explanation, reached.values)
-            if fit.ratio < NEARLY * self._least():
+        in_reach = reached.explanation.size <= self.beam.depth
+        fit = self.add(reached.explanation, reached.values) if in_reach else None
+        in_vain = not self.beside.open and self._least() >= NEARLY
+        if fit is not None:
+            if fit.ratio < NEARLY * self._least() and not (in_vain and self.beam.resigns):
                 self.refine([fit])
-            if adequate(self.fits[reached.explanation]):
+            if adequate(self.fits[fit.explanation]):
                 return True
         if self.beam.resigns:
             self._until = self._told + AGAIN * before
-        in_vain = not self.beside.open and self._least() >= NEARLY
         self.resigned = self.beam.resigns and (in_vain or not jumps(self._nearest().explanation))
         return False
 
