@@ -140,7 +140,9 @@ class Search:
             self._fit_most_promising(seeds)
             if not self.resigned:
                 self._lead_tried_harder(seeds, size + 1)
-            if self._complete(size + 1) or self._followed(best) or self._likeliest_accounts_for_all():
+            if self._complete(size) or self._complete(size + 1) or self._followed(best):
+                return
+            if self._likeliest_accounts_for_all():
                 return
             if self.resigned or self._drifts_expanded(seeds):
                 return
@@ -275,15 +277,17 @@ class Search:
         if size in self.rippled:
             return
         self.rippled.add(size)
-        for variant, ripple in ripples(self.whole):
-            if self._complete(size):
+        # alone as well: drifts that have bent for a ripple hide it
+        groups = (seeds, self.of_size(0)) if size == 2 else (seeds,)
+        for begins, (variant, ripple) in itertools.product(groups, ripples(self.whole)):
+            if self._complete(size) or self._complete(1):
                 return
             self.progress(f"{variant.label}, between rests")
-            grown = ((canonical(seed.explanation.plus(variant), self.drifts), seed) for seed in seeds)
-            bases = {explanation: seed for explanation, seed in grown if explanation is not None}
+            grown = ((canonical(begin.explanation.plus(variant), self.drifts), begin) for begin in begins)
+            bases = {explanation: begin for explanation, begin in grown if explanation is not None}
             fits = between_rests(self.whole, variant, ripple, bases, self.pool)
             for fit in map(self.keep, fits):
-                if fit.ratio < NEARLY and not self._complete(size):
+                if fit.ratio < NEARLY and not self._complete(fit.explanation.size):
                     self._refine_alone(fit)
 
     def expand(self, seed: Fit) -> list[Fit]:
