@@ -49,17 +49,19 @@ class Deadline:
 
     def part(self, share: float) -> Deadline:
         """One that ends when this `share` of what is left of it is over; where that stops, it is noted here too."""
-        part = Deadline(None if math.isinf(self._seconds) else share * self.left)
-        part._parent = self
-        return part
+        return self._within(share * self.left, told=True)
 
     def at_most(self, seconds: float) -> Deadline:
         """One that ends after so many `seconds`, or with this one; without end where this one has none.
 
         For what can be left undone: that its time was over is not noted here, but an interrupt is.
         """
-        part = Deadline(None if math.isinf(self._seconds) else min(seconds, self.left))
-        part._parent, part._told = self, seconds >= self.left
+        return self._within(min(seconds, self.left), told=seconds >= self.left)
+
+    def _within(self, seconds: float, told: bool) -> Deadline:
+        """One of so many `seconds`, without end where this one has none; it may be `told` that their time is over."""
+        part = Deadline(None if math.isinf(self._seconds) else seconds)
+        part._parent, part._told = self, told
         return part
 
     def check(self) -> None:

@@ -251,16 +251,18 @@ class Search:
         self.beside = supported(self.data, self.nominal, list(self.fits.values()), self.pool, self.progress)
         reached = self.beside.reached.fit
         in_reach = reached.explanation.size <= self.beam.depth
-        fit = self.add(reached.explanation, reached.values) if in_reach else None
-        in_vain = not self.beside.open and self._least() >= NEARLY
-        if fit is not None:
-            if fit.ratio < NEARLY * self._least() and not (in_vain and self.beam.resigns):
+        if in_reach:
+            self.add(reached.explanation, reached.values)
+        in_vain = self.beam.resigns and not self.beside.open and self._least() >= NEARLY
+        if in_reach:
+            fit = self.fits[reached.explanation]
+            if fit.ratio < NEARLY * self._least() and not in_vain:
                 self.refine([fit])
-            if adequate(self.fits[fit.explanation]):
+            if adequate(self.fits[reached.explanation]):
                 return True
         if self.beam.resigns:
             self._until = self._told + AGAIN * before
-        self.resigned = self.beam.resigns and (in_vain or not jumps(self._nearest().explanation))
+            self.resigned = in_vain or not jumps(self._nearest().explanation)
         return False
 
     def _nearest(self) -> Fit:
