@@ -134,7 +134,9 @@ def examined(
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
         if verdict_on(beside.chosen) != "unexplained" and (confirmed := unseen_confirm(beside)) != "nothing":
-            if confirmed == "all" and deadline.attempt(partial(effects_stand, beside, found, jobs, deadline), False):
+            if confirmed == "all" and deadline.attempt(
+                partial(effects_stand, beside, found, aside, jobs, deadline), False
+            ):
                 return beside, None
             if named.base is None:
                 return beside, unexamined(beside)
@@ -171,7 +173,7 @@ def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]
     return "all" if after < BETTER * before else "the disturbance"
 
 
-def effects_stand(beside: Found, found: Found, jobs: int | None, deadline: Deadline) -> bool:
+def effects_stand(beside: Found, found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> bool:
     """Whether effects that are found `beside` a wander are confirmed beside a remainder of any shape as well.
 
     A wander takes what is slow, of whatever origin, and leaves the rest of it to effects that are not there.
@@ -181,7 +183,7 @@ def effects_stand(beside: Found, found: Found, jobs: int | None, deadline: Deadl
         return True
     begun = found.estimator.fit(fit.explanation, fit.values, BRIEF)
     with workers(jobs, deadline) as pool:
-        return confirmed_beside(begun, Weighing(found.data, found.nominal, pool))
+        return confirmed_beside(begun, Weighing(found.data, found.nominal, pool), progress)
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:

@@ -12,7 +12,7 @@ EFFECT = Effect(
     elsewhere=Elsewhere(modelica={"inductance": "{inductance}"}, quantities={"winding_inductance": "inductance"}),
     shows_in="fractions of a millisecond after each change of duty",
     record="samples at 10 kHz or more",
-    parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.0127)),),
+    parameters=(Parameter("inductance", None, "of the winding", "H", 0.0, LARGEST, plausible=(0.00025, 0.064)),),
     strength=("inductance",),
     typical={"inductance": 0.002530387},
     variants=(Variant(("inductance",), grid(inductance=(0.0025, 0.0127))),),

@@ -76,6 +76,12 @@ def jumps(explanation: Explanation) -> bool:
     return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
+def moments(variant: Variant) -> list[str]:
+    """Dotted names of the moments of an effect that are searched, in their order."""
+    declared = EFFECT[variant.effect].parameters
+    return [f"{variant.effect}.{each.name}" for each in declared if each.moment and each.name in variant.free]
+
+
 Quantity = str | Variant
 """A drifted or changed parameter, or an effect."""
 

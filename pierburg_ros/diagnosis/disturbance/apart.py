@@ -19,10 +19,9 @@ from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
-from pierburg_ros.estimation.explanation import Explanation, Variant, without
+from pierburg_ros.estimation.explanation import Explanation, Variant, moments, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.plant import Model
@@ -219,20 +218,14 @@ def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> tuple[Data
     if load is None or len(recordings) > 1 or found.data.in_stretches:
         return None
     rest, estimator, values = without(found.chosen.explanation, load), found.estimator, found.chosen.values
-    start, end = (values[name] for name in _moments(load))
+    start, end = (values[name] for name in moments(load))
     told = with_open_bridge(found.data, estimator, estimator.at(rest, values), recordings[0], (start, end))
     return (told[0], told[2]) if told else None
 
 
 def _passing(variant: Variant) -> bool:
     """Whether an effect begins and ends, each at a moment that is searched."""
-    return len(_moments(variant)) == 2
-
-
-def _moments(variant: Variant) -> list[str]:
-    """Dotted names of the moments of an effect that are searched, in their order."""
-    parameters = EFFECT[variant.effect].parameters
-    return [f"{variant.effect}.{each.name}" for each in parameters if each.moment and each.name in variant.free]
+    return len(moments(variant)) == 2
 
 
 def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:

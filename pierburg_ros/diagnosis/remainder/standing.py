@@ -158,7 +158,12 @@ def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Suppor
     )
     if estimator.validation_misfit(refitted) < BETTER**2 * estimator.validation_misfit(grown):
         beside = scored(data, refitted)
-    weight = Weight(before.scored.cost - beside.cost, beside.left, instead=told.as_well, by_rule=told.share)
+    weight = Weight(
+        before.scored.cost - beside.cost,
+        beside.left,
+        instead=tuple((name,) for name in told.as_well),
+        by_rule=told.share,
+    )
     return Supported(nominal, beside, {**before.weights, told.variant: weight})
 
 

@@ -1,4 +1,4 @@
-"""Explanations with one quantity more, counted against what remains."""
+"""Larger explanations, counted against what remains."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
-from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, plausible
+from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, plausible, scored, strange
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
@@ -21,12 +21,12 @@ from pierburg_ros.estimation.explanation import Explanation, Variant, canonical,
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
-FOLLOWED = 3
+FOLLOWED = 5
 """Additions of each round and way that are fitted, of those that a linear step promises most. Work: each costs a brief
-descent; with 6, and 3 fitted again, no more of n = 4 trials beside a remainder were named."""
-SETTLED = 2
-"""How many of them are fitted again, each with its own discrepancy. Work: each costs a brief descent and a search for
-the discrepancy."""
+descent and a search for the discrepancy; in a trial beside a remainder the true effect promised fourth most."""
+SETTLED = 3
+"""How many additions of each round are fitted again, each with its own discrepancy, of those that are likeliest as they
+are. Work: each costs a brief descent and a search for the discrepancy; not varied."""
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,33 @@ def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Pr
     ways = [_Way(beside, beside.restated(base.fit), progress), _Way(alone, alone.fit(own, values, BRIEF), progress)]
     # each step of both is handed out at once, so that no core waits for the other way
     promises = [pool.map(way.promise, way.tasks) for way in ways]
-    followed = [_lowest(filter(None, each), FOLLOWED) for each in promises]
-    fitted = [pool.map(way.fitted, each) for way, each in zip(ways, followed, strict=True)]
-    ahead = [_lowest(each, SETTLED) for each in fitted]
-    found = [pool.map(way.begun_anew, each) for way, each in zip(ways, ahead, strict=True)]
-    return sorted(plausible(itertools.chain(*found), data, nominal, pool), key=lambda each: each.cost)
+    followed = [(way, one) for way, each in zip(ways, promises, strict=True) for one in _lowest(filter(None, each))]
+    reached = pool.map(lambda one: (one[0], scored(data, one[0].fitted(one[1]))), followed)
+    best: dict[Explanation, tuple[_Way, Scored]] = {}
+    for way, each in sorted(reached, key=lambda one: one[1].cost):
+        if not strange(each.fit, data, nominal):
+            best.setdefault(each.fit.explanation, (way, each))
+    anew = pool.map(lambda one: one[0].begun_anew(one[1].fit), itertools.islice(best.values(), SETTLED))
+    return _likeliest(anew, data, nominal, pool)
+
+
+def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
+    """The likeliest explanations with two more drifting parameters than `base`, the best first.
+
+    What a linear step promises of two at once says little: all pairs are fitted.
+    """
+    estimator, order, own = Estimator(data, nominal), drifting(nominal), base.fit.explanation
+    progress(f"{own.label}, beside two drifts")
+    pairs = (Explanation((*own.drifted, *two), own.variants) for two in itertools.combinations(order, 2))
+    explanations = filter(None, (canonical(pair, order) for pair in pairs))
+    begin = estimator.fit(own, base.fit.values, BRIEF).values
+    fits = pool.map(lambda pair: estimator.fit(pair, begin, BRIEF), explanations)
+    return _likeliest(_lowest(fits), data, nominal, pool)
+
+
+def _likeliest(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
+    """Fits of plausible values, each with its own discrepancy, the best first."""
+    return sorted(plausible(fits, data, nominal, pool), key=lambda each: each.cost)
 
 
 @dataclass(frozen=True)
@@ -110,9 +132,9 @@ class _Way:
 _Counted = TypeVar("_Counted", Fit, _Promise)
 
 
-def _lowest(found: Iterable[_Counted], most: int) -> list[_Counted]:
-    """Those that leave least, at most so many."""
-    return sorted(found, key=lambda each: each.chi2)[:most]
+def _lowest(found: Iterable[_Counted]) -> list[_Counted]:
+    """Those that are followed, for they leave least."""
+    return sorted(found, key=lambda each: each.chi2)[:FOLLOWED]
 
 
 def anew(estimator: Estimator, fit: Fit, starts: Mapping[Variant, list[Start]]) -> Fit:

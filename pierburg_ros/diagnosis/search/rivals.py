@@ -22,6 +22,7 @@ from pierburg_ros.estimation.explanation import (
     Variant,
     canonical,
     jumps,
+    moments,
     quantities,
     without,
 )
@@ -89,8 +90,7 @@ def _constant_part(variant: Variant, model: Model) -> tuple[str, str] | None:
 
 def _beginning(variant: Variant) -> str | None:
     """Dotted name of the moment from which an effect acts, where that is searched."""
-    moments = (p.name for p in EFFECT[variant.effect].parameters if p.moment and p.name in variant.free)
-    return next((f"{variant.effect}.{name}" for name in moments), None)
+    return next(iter(moments(variant)), None)
 
 
 def _take_over(search: Search, explanation: Explanation, fading: Variant, best: Fit) -> None:

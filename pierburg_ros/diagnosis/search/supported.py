@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.growing import grown
+from pierburg_ros.diagnosis.search.growing import drifted, grown
 from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
 from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange
 from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
@@ -143,24 +143,33 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
     return replace(beside, reached=reached, confirmed=_likeliest(beside.confirmed, now, reached))
 
 
-def confirmed_beside(fit: Fit, weighing: Weighing) -> bool:
-    """Whether unseen samples confirm all effects of a `fit`, with plausible values, however little they explain."""
-    weights = weighing.weighed(weighing.settled(fit)).weights
-    effects = {quantity: weight for quantity, weight in weights.items() if isinstance(quantity, Variant)}
-    return all(weight.confirmed and weight.plausible and not idle(one, weight) for one, weight in effects.items())
+def confirmed_beside(fit: Fit, weighing: Weighing, progress: Progress) -> bool:
+    """Whether unseen samples confirm all effects of a `fit`, with plausible values, however little they explain.
+
+    None of them may be what drifting parameters could stand for.
+    """
+    told = weighing.weighed(weighing.settled(fit))
+    effects = {quantity: weight for quantity, weight in told.weights.items() if isinstance(quantity, Variant)}
+    if any(not weight.confirmed or not weight.plausible or idle(one, weight) for one, weight in effects.items()):
+        return False
+    return effects.keys() <= told_apart(told, weighing, progress).weights.keys()
 
 
 def told_apart(named: Supported, weighing: Weighing, progress: Progress) -> Supported:
     """What of `named` may be named, each effect with what could stand in its place.
 
-    An effect that a drift could stand for is not: of equals that with fewer effects is taken.
+    Where drifting parameters, no more than an effect has free numbers, could stand for it they are told: of equals that
+    with fewer effects is taken.
     """
-    told, drifts = _with_rivals(named, weighing, progress), set(drifting(weighing.nominal))
-    doubted = {quantity for quantity, weight in told.weights.items() if drifts & set(weight.instead)}
-    if not doubted:
-        return told
-    rest = weighing.thinned(told, lambda quantity, _: quantity in doubted)
-    return told_apart(rest, weighing, progress)
+    weights, drifts = dict(named.weights), set(drifting(weighing.nominal))
+    for quantity, weight in weights.items():
+        if isinstance(quantity, Variant):
+            rivals = _rivals(named, quantity, weighing, progress)
+            for names, rival in rivals.items():
+                if drifts.issuperset(names) and len(names) <= len(quantity.free):
+                    return told_apart(weighing.heard(weighing.weighed(rival)), weighing, progress)
+            weights[quantity] = replace(weight, instead=tuple(rivals))
+    return replace(named, weights=weights)
 
 
 def with_play(named: Supported, reached: Fit, data: Data, nominal: Model) -> Supported:
@@ -184,15 +193,18 @@ def _shows(play: Play, fit: Fit, data: Data) -> bool:
     return play.variant.effect in fit.explanation.effects or (again is not None and again.gain >= PROMISING)
 
 
-def _with_rivals(named: Supported, weighing: Weighing, progress: Progress) -> Supported:
-    """`named` with what could stand in the place of each effect: what is less likely by less than would name it."""
-    weights = dict(named.weights)
-    for quantity, weight in weights.items():
-        if isinstance(quantity, Variant):
-            rest = weighing.lacking(named.scored, quantity)
-            others = grown(weighing.data, weighing.nominal, rest, weighing.pool, progress)
-            near = [each.fit.explanation for each in others if each.cost - named.scored.cost < SIGNIFICANT]
-            added = (set(quantities(each)) - set(quantities(rest.fit.explanation)) for each in near)
-            ids = dict.fromkeys(one if isinstance(one, str) else one.effect for each in added for one in each)
-            weights[quantity] = replace(weight, instead=tuple(each for each in ids if each != quantity.effect))
-    return replace(named, weights=weights)
+def _rivals(named: Supported, effect: Variant, weighing: Weighing, progress: Progress) -> dict[tuple[str, ...], Scored]:
+    """What could stand in the place of an effect, by name: what is less likely by less than would name it.
+
+    One other quantity, or two drifting parameters; the likeliest first.
+    """
+    rest = weighing.lacking(named.scored, effect)
+    own = set(quantities(rest.fit.explanation))
+    rivals: dict[tuple[str, ...], Scored] = {}
+    for look in (grown, drifted):
+        for each in look(weighing.data, weighing.nominal, rest, weighing.pool, progress):
+            added = [one for one in quantities(each.fit.explanation) if one not in own]
+            names = tuple(one if isinstance(one, str) else one.effect for one in added)
+            if each.cost - named.scored.cost < SIGNIFICANT and names != (effect.effect,):
+                rivals.setdefault(names, each)
+    return dict(sorted(rivals.items(), key=lambda rival: rival[1].cost))

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from pierburg_ros.diagnosis.search.moved import moved
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, scored, settled, strange, unseen
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
-from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, jumps, quantities, without
+from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, jumps, moments, quantities, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.refinement import lowered
 from pierburg_ros.plant import Model
@@ -44,10 +43,10 @@ class Weight:
     costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
     are `expected` to show: its gain by their number over that of those that train. `explains` is the share of the mean
     square that it moves, beside what remains, None where that was not asked; `plausible`: its values are such as 95 of
-    100 actuators have. `instead` are effects or drifting parameters that gain almost as much in its place. `by_rule` is
-    the share of what a controller's rule leaves that goes with it, None where no controller vouches for it
-    (`witness.py`). `bare` is what is left where none of several effects acts and what drifts stays as it is, 0 where it
-    is the only one.
+    100 actuators have. `instead` is what gains almost as much in its place: an effect, or one or two drifting
+    parameters. `by_rule` is the share of what a controller's rule leaves that goes with it, None where no controller
+    vouches for it (`witness.py`). `bare` is what is left where none of several effects acts and what drifts stays as it
+    is, 0 where it is the only one.
     """
 
     gain: float
@@ -56,7 +55,7 @@ class Weight:
     expected: float = 0.0
     explains: float | None = None
     plausible: bool = True
-    instead: tuple[str, ...] = ()
+    instead: tuple[tuple[str, ...], ...] = ()
     by_rule: float | None = None
     bare: float = 0.0
 
@@ -109,7 +108,7 @@ def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
     """
     if idle(quantity, weight) or not weight.believed:
         return True
-    return isinstance(quantity, Variant) and (EFFECT[quantity.effect].dated or weight.carried < CARRIES)
+    return isinstance(quantity, Variant) and (bool(moments(quantity)) or weight.carried < CARRIES)
 
 
 class Weighing:

@@ -98,7 +98,7 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
 def _tied(base: Fit, weights: Mapping[str, Weight]) -> list[Alternative]:
     """What may stand for each effect of `base` beside what remains."""
     own = (variant for variant in base.explanation.variants if variant.effect in weights)
-    return [Alternative(variant, (name,)) for variant in own for name in weights[variant.effect].instead]
+    return [Alternative(variant, names) for variant in own for names in weights[variant.effect].instead]
 
 
 def verdict_on(chosen: Fit) -> Verdict:

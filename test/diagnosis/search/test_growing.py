@@ -1,10 +1,10 @@
-"""Explanations with one quantity more: what was fitted in the place of something else is begun anew beside it."""
+"""Larger explanations: what was fitted in the place of something else is begun anew beside it."""
 
 import pytest
 from support.recordings import NOMINAL, data_on, disturbed, recording
 
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.growing import anew, grown
+from pierburg_ros.diagnosis.search.growing import anew, drifted, grown
 from pierburg_ros.diagnosis.search.scored import estimator_beside, scored, settled
 from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.estimator import Estimator
@@ -56,6 +56,28 @@ def test_a_drift_is_found_though_a_discrepancy_explains_all_that_it_makes(name, 
         found = grown(data, NOMINAL, base, pool, lambda _: None)[0]
     assert found.fit.explanation == Explanation((name,))
     assert found.fit.values[name] == pytest.approx(value, rel=0.02)
+
+
+def test_two_drifts_at_once_are_found_that_neither_alone_makes_likely():
+    """More friction and less preload: what a Coulomb difference between the directions does."""
+    true = {"spring_preload": 0.27, "coulomb_friction": 0.22}
+    data = data_on(disturbed(true, 0))
+    base = scored(data, Estimator(data, NOMINAL).at(Explanation()))
+    with workers(1) as pool:
+        found = drifted(data, NOMINAL, base, pool, lambda _: None)
+    assert found[0].fit.explanation == Explanation(("spring_preload", "coulomb_friction"))
+    assert {name: found[0].fit.values[name] for name in true} == pytest.approx(true, rel=0.02)
+
+
+def test_what_a_linear_step_promises_less_of_is_found_as_likely():
+    """Inductance of the winding, and a gear that twists: three others promise more than the former."""
+    data = data_on(disturbed({"armature_inductance.inductance": 0.025}, 0))
+    base = scored(data, Estimator(data, NOMINAL).at(Explanation()))
+    with workers(1) as pool:
+        found = grown(data, NOMINAL, base, pool, lambda _: None)
+    cost = {each.fit.explanation.effects: each.cost for each in found}
+    assert len(cost) == len(found)
+    assert cost["armature_inductance",] == pytest.approx(cost["gear_compliance",], abs=PROMISING)
 
 
 def test_a_fit_is_settled_when_its_own_discrepancy_moves_it_no_further():

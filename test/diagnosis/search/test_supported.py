@@ -139,7 +139,7 @@ def test_an_effect_found_elsewhere_is_confirmed_beside_what_remains(really: dict
     data = data_on(disturbed(really, 0))
     late = Estimator(data, NOMINAL).fit(Explanation(variants=(DELAY,)), {"input_delay.delay": 0.018})
     with workers(1) as pool:
-        assert confirmed_beside(late, Weighing(data, NOMINAL, pool)) == confirmed
+        assert confirmed_beside(late, Weighing(data, NOMINAL, pool), lambda _: None) == confirmed
 
 
 def test_a_quantity_carries_what_it_gains_of_that_and_what_is_left():
@@ -169,7 +169,7 @@ def test_a_drift_that_may_stand_in_for_effects_takes_none_of_their_evidence():
 def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
     there, bent = (Weight(300.0, 100.0, unseen, 50.0) for unseen in (45.0, 5.0))
     assert there.confirmed and not bent.confirmed
-    assert there.confidence == 3.0 * replace(there, instead=("sensor_lag", "backlash")).confidence
+    assert there.confidence == 3.0 * replace(there, instead=(("sensor_lag",), ("backlash",))).confidence
     assert Weight(300.0, 100.0).confirmed and Weight(300.0, 100.0).confidence == pytest.approx(0.75)
     assert 0.0 < CONFIRMED < 1.0
 
@@ -246,7 +246,7 @@ def test_values_that_no_actuator_has_are_not_heard():
     begin = beginning(data)
     assert settled(data, NOMINAL, fit).cost < begin.reached.cost - 1000.0
     assert likelier(begin, fit, Weighing(data, NOMINAL, Inline())) is begin
-    assert not confirmed_beside(fit, Weighing(data, NOMINAL, Inline()))
+    assert not confirmed_beside(fit, Weighing(data, NOMINAL, Inline()), lambda _: None)
 
 
 @pytest.mark.parametrize(("delay", "told"), [(0.0005, True), (0.02, False)])
@@ -258,3 +258,48 @@ def test_what_gains_almost_as_much_is_told_with_the_name(delay, told):
     confirmed = Supported(NOMINAL, best, {DELAY: Weight(100.0, 0.0, 100.0, 100.0, 0.9)})
     named = named_in(Beside(best, 0.0, confirmed), data)
     assert (named is not None and named.weights[DELAY].instead == ()) is not told
+
+
+def by_direction(*free: str, **values: float) -> tuple[Data, Supported]:
+    """A valve whose preload and friction have drifted, and friction by direction that does the same."""
+    data = data_on(disturbed({"spring_preload": 0.27, "coulomb_friction": 0.22}, 0))
+    variant = Variant("direction_dependent_friction", free)
+    start = {f"{variant.effect}.{name}": value for name, value in values.items()}
+    best = settled(data, NOMINAL, Estimator(data, NOMINAL).at(Explanation((), (variant,)), start))
+    return data, Supported(NOMINAL, best, {variant: Weight(1000.0, 100.0, 100.0, 100.0, 0.9)})
+
+
+def test_two_drifts_are_told_in_the_place_of_an_effect_with_as_many_numbers():
+    data, named = by_direction(
+        "viscous_difference", "coulomb_difference", viscous_difference=0.0, coulomb_difference=0.04
+    )
+    told = told_apart(named, Weighing(data, NOMINAL, Inline()), lambda _: None)
+    assert told.scored.fit.explanation == Explanation(("spring_preload", "coulomb_friction"))
+    assert told.scored.fit.values["spring_preload"] == pytest.approx(0.27, rel=0.03)
+    fit = named.scored.fit
+    assert not confirmed_beside(fit, Weighing(data, NOMINAL, Inline()), lambda _: None)
+
+
+def test_an_effect_with_fewer_numbers_is_told_with_the_drifts_that_fit_alike():
+    data, named = by_direction("coulomb_difference", coulomb_difference=0.04)
+    told = told_apart(named, Weighing(data, NOMINAL, Inline()), lambda _: None)
+    assert told.scored is named.scored
+    assert ("spring_preload", "coulomb_friction") in next(iter(told.weights.values())).instead
+
+
+@pytest.mark.parametrize(
+    ("variant", "values", "heard"),
+    [
+        (("amplitude", "frequency", "phase"), {"amplitude": 0.06, "frequency": 3.1, "phase": 0.4, "end": 1e9}, True),
+        (("torque", "start", "end"), {"torque": 0.08, "start": 4.0, "end": 11.0}, False),
+    ],
+)
+def test_a_load_that_pulsates_is_heard_and_one_that_comes_and_goes_is_not(variant, values, heard):
+    """What acts between two moments may be anything that happened then."""
+    load = Variant("external_load", variant)
+    true = {f"external_load.{name}": value for name, value in values.items()}
+    data = data_on(disturbed(true, 0))
+    fit = Estimator(data, NOMINAL).at(Explanation((), (load,)), true)
+    found = likelier(beginning(data), fit, Weighing(data, NOMINAL, Inline()))
+    assert found.reached.fit.explanation.effects == ("external_load",)
+    assert (load in found.confirmed.weights) is heard
