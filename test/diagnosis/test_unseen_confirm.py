@@ -52,4 +52,4 @@ def test_without_a_disturbance_the_search_has_decided():
 def test_an_effect_beside_a_disturbance_has_to_stand_beside_a_remainder_of_any_shape(really, stands):
     beside = found(really, disturbed=True)
     elsewhere = SimpleNamespace(data=beside.data, nominal=NOMINAL, estimator=Estimator(beside.data, NOMINAL))
-    assert effects_stand(beside, elsewhere, 1, Deadline()) == stands
+    assert effects_stand(beside, elsewhere, lambda _: None, 1, Deadline()) == stands
