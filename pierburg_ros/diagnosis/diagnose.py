@@ -134,9 +134,8 @@ def examined(
         aside, time = staged(progress, "disturbances"), deadline.part(APART)
         beside = time.attempt(partial(apart, found, recordings[0], aside, jobs, time), found)
         if verdict_on(beside.chosen) != "unexplained" and (confirmed := unseen_confirm(beside)) != "nothing":
-            if confirmed == "all" and deadline.attempt(
-                partial(effects_stand, beside, found, aside, jobs, deadline), False
-            ):
+            stand = partial(effects_stand, beside, found, aside, jobs, deadline)
+            if confirmed == "all" and deadline.attempt(stand, False):
                 return beside, None
             if named.base is None:
                 return beside, unexamined(beside)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
+
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.effects import EFFECTS, Effect
@@ -43,6 +46,15 @@ def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
 def may_change(explanation: Explanation, data: Data) -> bool:
     """Whether a change in the middle is looked for beside an explanation: beside drifts, and in single recordings."""
     return not explanation.variants and explanation.changed is None and len(data.runs) == 1
+
+
+def with_drifts(explanation: Explanation, drifts: tuple[str, ...], count: int) -> Iterator[Explanation]:
+    """An explanation with so many more parameters that drift, each combination of those that do not yet."""
+    free = [name for name in drifts if name not in explanation.drifted and name != explanation.changed]
+    for others in itertools.combinations(free, count):
+        key = canonical(Explanation((*explanation.drifted, *others), explanation.variants, explanation.changed), drifts)
+        if key is not None:
+            yield key
 
 
 def expansions(base: Fit, data: Data, drifts: tuple[str, ...]) -> dict[Explanation, tuple[Addition, list[Start]]]:

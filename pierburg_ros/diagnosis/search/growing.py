@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
-from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of
+from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of, with_drifts
 from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, plausible, scored, strange
 from pierburg_ros.diagnosis.search.tried import Progress
@@ -51,13 +51,14 @@ def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Pr
     # each step of both is handed out at once, so that no core waits for the other way
     promises = [pool.map(way.promise, way.tasks) for way in ways]
     followed = [(way, one) for way, each in zip(ways, promises, strict=True) for one in _lowest(filter(None, each))]
-    reached = pool.map(lambda one: (one[0], scored(data, one[0].fitted(one[1]))), followed)
+    fitted = pool.map(lambda one: (one[0], one[0].fitted(one[1])), followed)
+    sensible = [(way, fit) for way, fit in fitted if not strange(fit, data, nominal)]
+    reached = pool.map(lambda one: (one[0], scored(data, one[1])), sensible)
     best: dict[Explanation, tuple[_Way, Scored]] = {}
     for way, each in sorted(reached, key=lambda one: one[1].cost):
-        if not strange(each.fit, data, nominal):
-            best.setdefault(each.fit.explanation, (way, each))
-    anew = pool.map(lambda one: one[0].begun_anew(one[1].fit), itertools.islice(best.values(), SETTLED))
-    return _likeliest(anew, data, nominal, pool)
+        best.setdefault(each.fit.explanation, (way, each))
+    ahead = pool.map(lambda one: one[0].begun_anew(one[1].fit), itertools.islice(best.values(), SETTLED))
+    return _likeliest(ahead, data, nominal, pool)
 
 
 def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
@@ -65,12 +66,10 @@ def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: 
 
     What a linear step promises of two at once says little: all pairs are fitted.
     """
-    estimator, order, own = Estimator(data, nominal), drifting(nominal), base.fit.explanation
+    estimator, own = Estimator(data, nominal), base.fit.explanation
     progress(f"{own.label}, beside two drifts")
-    pairs = (Explanation((*own.drifted, *two), own.variants) for two in itertools.combinations(order, 2))
-    explanations = filter(None, (canonical(pair, order) for pair in pairs))
     begin = estimator.fit(own, base.fit.values, BRIEF).values
-    fits = pool.map(lambda pair: estimator.fit(pair, begin, BRIEF), explanations)
+    fits = pool.map(lambda pair: estimator.fit(pair, begin, BRIEF), with_drifts(own, drifting(nominal), 2))
     return _likeliest(_lowest(fits), data, nominal, pool)
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from pierburg_ros.diagnosis.search.candidates import may_change
+from pierburg_ros.diagnosis.search.candidates import may_change, with_drifts
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import alike, complete, gains_enough
@@ -20,7 +19,6 @@ from pierburg_ros.estimation.explanation import (
     Explanation,
     Quantity,
     Variant,
-    canonical,
     jumps,
     moments,
     quantities,
@@ -42,7 +40,8 @@ def fit_rivals(search: Search, best: Fit) -> None:
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
         search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
-        rivals = list(_by_parameters(rest, search.drifts, 2 if isinstance(quantity, Variant) else 1))
+        counts = (1, 2) if isinstance(quantity, Variant) else (1,)
+        rivals = [each for count in counts for each in with_drifts(rest, search.drifts, count)]
         rivals += _by_a_change(rest, quantity, search)
         list(search.pool.map(partial(_tried, search, rest, quantity, best), dict.fromkeys(rivals)))
         fits = (search.fits[rival] for rival in rivals if rival in search.fits)
@@ -59,15 +58,6 @@ def _tried(search: Search, rest: Explanation, quantity: Quantity, best: Fit, riv
     elif jumps(rest) and not complete(best):
         # grown on the rest, its effects have first been bent to stand for the drift
         search.add(rival, best.values)
-
-
-def _by_parameters(rest: Explanation, drifts: tuple[str, ...], most: int) -> Iterator[Explanation]:
-    """`rest` with one more parameter that drifts, two more, up to `most`."""
-    free = [name for name in drifts if name not in rest.drifted and name != rest.changed]
-    for others in (each for count in range(1, most + 1) for each in itertools.combinations(free, count)):
-        key = canonical(Explanation((*rest.drifted, *others), rest.variants, rest.changed), drifts)
-        if key is not None:
-            yield key
 
 
 def _by_a_change(rest: Explanation, quantity: Quantity, search: Search) -> list[Explanation]:
