@@ -32,7 +32,7 @@ STAGES = {
     "refinement": ["diagnosis.search.search.Search.refine"],
     "search, the rest": ["diagnosis.diagnose.search"],
     "rivals": ["diagnosis.search.found.fit_rivals"],
-    "drift of the nominal structure": ["diagnosis.search.found._recalibrated"],
+    "drift of the nominal structure": ["diagnosis.search.search.Search.recalibrated"],
     "last values, intervals": ["diagnosis.search.found._last_values"],
     "disturbances": [f"diagnosis.diagnose.{name}" for name in ("untouched", "rounded", "unnamed", "apart")],
     "what remains": ["diagnosis.diagnose.remainder"],

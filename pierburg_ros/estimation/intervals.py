@@ -161,11 +161,17 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
         return np.asarray(point)
 
     def fitted(distance: float, valley: Signal, further: float) -> Solution:
-        """The best fit at so great a distance, from the valley that leads there by a factor `further`."""
+        """The best fit at so great a distance, from the valley that leads there by a factor `further`.
+
+        A smooth cost needs no better one than the first that keeps the limit.
+        """
         starts = (moved(distance, further * valley), moved(distance, valley), moved(distance, nowhere))
-        tried = {tuple(start): start for start in starts}.values()
-        fits = (estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution for start in tried)
-        return min(fits, key=lambda solution: solution.cost)
+        solutions: list[Solution] = []
+        for start in {tuple(start): start for start in starts}.values():
+            solutions.append(estimator.fit(fit.explanation, coordinates.values(start), BRIEF, held=name).solution)
+            if not rough and solutions[-1].cost <= limit:
+                break
+        return min(solutions, key=lambda solution: solution.cost)
 
     nowhere = np.zeros(best.size)
     points, valley, reached = [moved(reach, nowhere)], nowhere, 0.0

@@ -9,16 +9,19 @@ import numpy as np
 
 from pierburg_ros.proof.dirt.kinds import DIRT
 from pierburg_ros.proof.formulation.values import CATALOGUE, NOMINAL, OUTSIDE
-from pierburg_ros.proof.strengths import drift, remainder, strength
+from pierburg_ros.proof.strengths import drift, guesses, remainder, strength
 from pierburg_ros.proof.trial import Change, Trial
 
 Random = np.random.Generator
-WITHOUT_EFFECT = ("consistent", "drift", "change")
+WITHOUT_EFFECT = ("consistent", "drift", "change", "guesses")
 WITH_REMAINDER = ("beside", "remainder")
 """One effect beside physics outside the catalogue that leaves ten times the noise, and that physics alone."""
-KINDS = (*CATALOGUE, *WITHOUT_EFFECT, "two", "outside", *WITH_REMAINDER)
+WITH_GUESSES = ("guesses", "beside_guesses")
+"""A description of which four numbers are off, and one effect beside such a one."""
+KINDS = (*CATALOGUE, "consistent", "drift", "change", "two", "outside", *WITH_REMAINDER, *WITH_GUESSES)
+"""In this order, by which trials are drawn."""
 BESIDE = tuple(effect for effect in CATALOGUE if effect != "sensor_quantization")
-"""Effects that stand beside a remainder, in turn; steps of the converter are read from the samples, not searched."""
+"""Effects that stand beside a remainder or guesses, in turn; steps of the converter are read from the samples."""
 OVER_GRAPH = {**dict.fromkeys(CATALOGUE, 1), "consistent": 3, "drift": 3}
 """Trials of each kind in the smaller run over the ROS graph."""
 DIRTY = dict.fromkeys(DIRT, 8)
@@ -35,8 +38,10 @@ PUBLISHED = {
     "outside": 12,
     "beside": 80,
     "remainder": 20,
+    "guesses": 20,
+    "beside_guesses": 40,
 }
-"""Trials of each kind in the published run: 20 a catalogue effect, 100 without any."""
+"""Trials of each kind in the published run: 20 a catalogue effect, 120 without any."""
 
 
 def draw(kind: str, number: int, seed: int) -> Trial:
@@ -81,7 +86,7 @@ def _effects(kind: str, number: int, random: Random) -> dict[str, float]:
         return strength(kind, random)
     if kind == "outside":
         return strength(list(OUTSIDE)[number // 2 % len(OUTSIDE)], random)
-    if kind == "beside":
+    if kind in ("beside", "beside_guesses"):
         return strength(BESIDE[number // 2 % len(BESIDE)], random)
     if kind == "two":
         first, second = random.choice(list(CATALOGUE), 2, replace=False)
@@ -90,6 +95,8 @@ def _effects(kind: str, number: int, random: Random) -> dict[str, float]:
 
 
 def _drifted(kind: str, closed_loop: bool, random: Random) -> dict[str, float]:
+    if kind in WITH_GUESSES:
+        return {name: NOMINAL[name] * factor for name, factor in guesses(random).items()}
     concealing = closed_loop and kind not in WITHOUT_EFFECT and random.random() < 0.8
     if not (kind == "drift" or concealing):
         return {}

@@ -70,6 +70,9 @@ def headline(run: Run) -> dict[str, Share]:
         "Rightly named: unseen data within 1.1 of the noise": tally.share(results, tally.unseen_right),
         "Two effects: verdict and both names": tally.share(kind(results, "two"), lambda r: r["right"]),
         "Outside the catalogue: unexplained": tally.share(kind(results, "outside"), lambda r: r["right"]),
+        "Effect beside four wrong numbers, that the recording shows: verdict and exact name": tally.share(
+            kind(results, "beside_guesses"), lambda r: r["right"] if r["shown"] else None
+        ),
         "Effect beside a remainder, moving the signal more than that: exact name": tally.share(
             kind(results, "beside"), lambda r: r["right"] if r["shown"] else None
         ),

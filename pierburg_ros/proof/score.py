@@ -161,9 +161,12 @@ def values_of(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> tuple[V
 
 
 def drift_named(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> bool | None:
-    """Whether the drifted parameters are named, alone or in a reported tie; None where none drifted."""
+    """Whether the drifted parameter is named, alone or in a reported tie.
+
+    None where none drifted, or several: what these do together others do as well.
+    """
     drifted = set(truth["drifted"])
-    if not drifted:
+    if len(drifted) != 1:
         return None
     given = diagnosis.get("parameters", {})
     named = {name for name, parameter in given.items() if parameter.get("drifted")}

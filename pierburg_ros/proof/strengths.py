@@ -132,6 +132,9 @@ DRIFTS: dict[str, Draw] = {
 SMALLEST_DRIFT = 0.04
 
 
+GUESSED = 4
+"""Numbers of a description that are off together."""
+
 TIED = {
     "viscous_friction": ("armature_resistance", "torque_constant", "supply_voltage"),
     "direction_dependent_friction": ("spring_preload", "coulomb_friction"),
@@ -146,3 +149,9 @@ def drift(random: Random, effect: str = "") -> tuple[str, float]:
     while abs(factor - 1.0) < SMALLEST_DRIFT:
         factor = DRIFTS[name](random)
     return name, factor
+
+
+def guesses(random: Random) -> dict[str, float]:
+    """The factors by which several base parameters are off: what a description guesses."""
+    names = random.choice(list(DRIFTS), GUESSED, replace=False)
+    return {str(name): DRIFTS[str(name)](random) for name in names}

@@ -103,3 +103,12 @@ def test_a_run_cut_short_has_some_of_each_kind():
 def test_the_published_run_is_as_large_as_promised():
     assert all(PUBLISHED[effect] >= 20 for effect in CATALOGUE)
     assert sum(PUBLISHED[kind] for kind in WITHOUT_EFFECT) >= 100
+
+
+def test_four_numbers_of_a_guessed_description_are_off():
+    alone, beside = draw("guesses", 2, 3), draw("beside_guesses", 2, 3)
+    assert len(alone.drifted) == len(beside.drifted) == 4
+    assert alone.verdict == "parameter_drift" and not alone.effects
+    assert beside.verdict == "missing_physics" and len(beside.effect_ids) == 1
+    for trial in (alone, beside):
+        assert all(trial.values[name] == value != NOMINAL[name] for name, value in trial.drifted.items())

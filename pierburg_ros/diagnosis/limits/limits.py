@@ -12,8 +12,9 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.limits.held import Case, Held
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.found import INDEPENDENT, Found
+from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.linear import difference, projection
+from pierburg_ros.diagnosis.search.together import INDEPENDENT
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start

@@ -17,7 +17,7 @@ from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, in_stretches
 from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
-from pierburg_ros.estimation.least_squares import BRIEF, minimise
+from pierburg_ros.estimation.least_squares import BRIEF, Map, minimise
 from pierburg_ros.estimation.turn import described_turn, with_turn
 from pierburg_ros.plant import Model
 
@@ -79,7 +79,7 @@ def fit_shape(
         way = ways[int(np.argmin(errors))]
     progress("residual torque over angle and velocity")
     base = way(data).with_residual(None)
-    model = _fitted(data, base)
+    model = _fitted(data, base, pool.map)
     grid = model.residual_torque or {}
     over_time = _over_time(data, base)
     motion = data.actuator.motion
@@ -111,8 +111,8 @@ def _left_out(data: Data, way: Way) -> float:
     return min(error(base), error(_fitted(inner, base)))
 
 
-def _fitted(data: Data, base: Model) -> Model:
-    """`base` with its best shape.
+def _fitted(data: Data, base: Model, over: Map = map) -> Model:
+    """`base` with its best shape; `over` maps a function over the columns of a Jacobian.
 
     It is bilinear between about 7 x 6 nodes. The signal is simulated in short stretches, each from the measured state:
     a slip at the wrong moment is forgotten after one. Large errors count by their logarithm. A prior keeps the shape
@@ -141,7 +141,7 @@ def _fitted(data: Data, base: Model) -> Model:
 
     size = angle.size * velocity.size
     bound, step = np.full(size, WIDTH * SPREAD), np.full(size, STEEPNESS / 10.0)
-    solution = minimise(residual, np.zeros(size), -bound, bound, step, BRIEF // 2, 3e-3)
+    solution = minimise(residual, np.zeros(size), -bound, bound, step, BRIEF // 2, 3e-3, over)
     return shaped(solution.point)
 
 

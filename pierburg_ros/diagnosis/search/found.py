@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, replace
-
-import numpy as np
-from scipy.linalg import qr
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
@@ -28,9 +24,6 @@ from pierburg_ros.workers import workers
 GROWING = 0.7
 """Share of the time that the search may take; the rest is for last values, what remains, and limits. Chosen: without a
 limit these took 5 to 40 % of it; not varied."""
-INDEPENDENT = 1e-3
-"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
-Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +81,7 @@ def search(
         found = done or (begun[0] if begun else Search(data, nominal, pool))
         found.progress = progress
         chosen = found.preferred() if found.fits else found.add(Explanation())
-        recalibrated = _recalibrated(found, pool)
+        recalibrated = found.recalibrated(pool)
     result = Found(
         found.data,
         nominal,
@@ -165,16 +158,3 @@ def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fi
             fit = lowered(estimator, fit)
         # its fits are spread over the cores, not the columns of each
         return lowest_with_estimates(Estimator(estimator.data, found.nominal), fit, pool.map)
-
-
-def _recalibrated(found: Search, pool: Executor) -> Fit:
-    """The nominal structure with as many of its parameters re-estimated as the recordings tell apart."""
-    nominal = found.whole.at(Explanation(found.drifts))
-    marks = nominal.solution.jacobian / np.maximum(np.linalg.norm(nominal.solution.jacobian, axis=0), 1e-12)
-    _, triangle, order = qr(marks, mode="economic", pivoting=True)
-    count = int(np.sum(np.abs(np.diag(triangle)) > INDEPENDENT))
-    names = {found.drifts[index] for index in order[:count]}
-    explanation = Explanation(tuple(name for name in found.drifts if name in names))
-    drifts = (fit for fit in list(found.fits.values()) if not fit.explanation.variants and not fit.explanation.changed)
-    starts = [found.nominal.values, min(drifts, key=lambda fit: fit.chi2).values]
-    return min(pool.map(lambda start: found.whole.fit(explanation, start), starts), key=lambda fit: fit.chi2)

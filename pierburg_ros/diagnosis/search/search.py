@@ -17,10 +17,12 @@ from pierburg_ros.diagnosis.search.ripple import between_rests, ripples
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import accounts_for_all, adequate, alike, betters, complete, tied
 from pierburg_ros.diagnosis.search.supported import Beside, supported
+from pierburg_ros.diagnosis.search.together import drifting_apart, drifting_fewer
 from pierburg_ros.diagnosis.search.tried import Progress
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, quantities, without
+from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, jumps, quantities, without
 from pierburg_ros.estimation.refinement import NEARLY, refined
 from pierburg_ros.plant import Model
 
@@ -28,9 +30,14 @@ FIRST_PART = 2 * CYCLE * BLOCK
 """How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
 that every kind of block is there twice."""
 LEADING = 0.25
-"""Share of chi2 that one more quantity leaves at most for its explanation to be grown before others of its size are
-tried. Chosen: what halves the error is hardly there by chance, and trying it costs a tenth of the others. In n = 2
-trials whose third quantity was not reached in time it left 0.02 and 0.12."""
+"""Share of the squared error beyond the noise that one more quantity leaves at most for its explanation to be refined,
+or grown before others of its size are tried. Measured: ripples that are there left 0.005 or less before they were
+refined (n = 7 fits), static friction beside a drift 0.17 (n = 1), two third quantities 0.02 and 0.12; all 16
+refinements in n = 4 recordings that nothing explains began at 0.27 or more, took 10 to 60 s of each, and none took a
+tenth of its error away."""
+FEWER = 4
+"""Combinations of as many drifting parameters that are fitted in the place of more, the best by a linear step. Work:
+each is a whole fit; not varied."""
 REFINED = 2
 """How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
 COMPARABLE = 1.5
@@ -86,6 +93,7 @@ class Search:
         self.tried = self.waiting = 0
         self.pool = pool
         self.beside: Beside | None = None
+        self.all_drifted = False
         self.resigned = False
         self._told, self._until = 0, math.inf
 
@@ -138,15 +146,17 @@ class Search:
         seeds = self._seeds(best)
         if len(seeds) > 1:
             self._fit_most_promising(seeds)
+            if self._accounted_for(best):
+                return
             if not self.resigned:
                 self._lead_tried_harder(seeds, size + 1)
-            if self._complete(size) or self._complete(size + 1) or self._followed(best):
+            if self._accounted_for(best):
                 return
             if self._likeliest_accounts_for_all():
                 return
             if self.resigned or self._drifts_expanded(seeds):
                 return
-            self.refine(self.of_size(size))
+            self._refine_leading(size)
             best = self.preferred(size)
             if accounts_for_all(best, self.data):
                 return
@@ -158,7 +168,21 @@ class Search:
             if not self._complete(size + 1) and (size or self.beam.depth == 1):
                 self._fit_ripples(seeds)
             if self._wants_refinement(best, size + 1):
-                self.refine(self.of_size(size + 1))
+                self._refine_leading(size + 1)
+
+    def _accounted_for(self, best: Fit) -> bool:
+        """Whether something accounts for all by now, or does where what leads is grown.
+
+        Where a ripple leads, it has to be looked for between rests first.
+        """
+        size = best.explanation.size
+        if self._complete(size) or self._complete(size + 1):
+            return True
+        leading = self.best_of_size(size + 1)
+        rhythmic = leading is not None and any(EFFECT[one].ripple for one in leading.explanation.effects)
+        if rhythmic and size + 1 not in self.rippled:
+            return False
+        return self._followed(best) or self._all_drift()
 
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
         """Descend again to what leads among explanations of a `size`, if its cost has many local minima.
@@ -170,7 +194,7 @@ class Search:
             return
         self._fit_ripples(seeds)
         if jumps(leading.explanation) and not self._complete(size):
-            self.refine(self.of_size(size))
+            self._refine_leading(size)
 
     def _followed(self, best: Fit) -> bool:
         """Grow what leads among the explanations one quantity larger than `best`, if it leaves far less.
@@ -182,10 +206,68 @@ class Search:
         leading = self.best_of_size(size)
         if leading is None or size == self.beam.depth:
             return False
-        if leading.ratio < NEARLY or leading.chi2 > LEADING * best.chi2:
+        if leading.ratio < NEARLY or not _far_below(leading, best):
             return False
         self.expand(leading)
         return self._complete(size + 1)
+
+    def _all_drift(self) -> bool:
+        """Whether something accounts for all where all drifts that recordings tell apart; asked once.
+
+        A description of guesses is off in more numbers than can be added one by one, and what is added before they are
+        right stands for them. Effects are added to all of them, while each leaves far less. Then as few drift as have
+        to.
+        """
+        if self.all_drifted or self.exhausted:
+            return False
+        self.all_drifted = True
+        best = self.keep(self.recalibrated(self.pool))
+        while not adequate(best):
+            larger = min(self._acting_on(best), key=lambda fit: fit.chi2, default=best)
+            if not adequate(larger) and not _far_below(larger, best):
+                return False
+            best = larger
+        fewest = self._drifting_fewer(best)
+        self._acting_instead(fewest)
+        return True
+
+    def _drifting_fewer(self, best: Fit) -> Fit:
+        """Fit the effects of what accounts for all with ever fewer drifts, as long as these do; the last that does."""
+        self.keep(best)
+        for count in range(len(best.explanation.drifted) - 1, -1, -1):
+            begins = drifting_fewer(best, self.whole, self.drifts, count)[:FEWER]
+            fewer = min(self.pool.map(lambda begin: self.add(*begin), begins), key=lambda fit: fit.chi2)
+            if not adequate(fewer):
+                break
+            best = fewer
+        return best
+
+    def _acting_instead(self, best: Fit) -> None:
+        """Fit what is most promising in the place of any two drifts of `best`: one effect may do what both do."""
+        pairs = list(itertools.combinations(best.explanation.drifted, 2))
+        if best.explanation.size > 2 and pairs:
+            rests = (without(without(best.explanation, one), other) for one, other in pairs)
+            self._fit_most_promising([self.add(rest, best.values) for rest in rests])
+
+    def _acting_on(self, seed: Fit) -> list[Fit]:
+        """Whole fits of effects added to `seed`."""
+        acting = [each for each in self._screened(seed) if isinstance(each.addition, Variant)]
+        return self._race(acting, most=self.beam.ahead // 3)
+
+    def recalibrated(self, pool: Executor) -> Fit:
+        """The nominal structure with as many of its parameters re-estimated as the recordings tell apart.
+
+        From nominal values and from what leaves least so far where parameters drift.
+        """
+        explanation = drifting_apart(self.whole, self.drifts)
+        starts = [self.nominal.values, self._drifted(but=explanation).values]
+        fits = [*pool.map(lambda start: self.whole.fit(explanation, start), starts), self.fits.get(explanation)]
+        return min(filter(None, fits), key=lambda fit: fit.chi2)
+
+    def _drifted(self, but: Explanation | None = None) -> Fit:
+        """What leaves least so far where parameters drift and nothing else, without one explanation that does."""
+        fits = (fit for fit in list(self.fits.values()) if not fit.explanation.variants and not fit.explanation.changed)
+        return min((fit for fit in fits if fit.explanation != but or not fit.explanation.size), key=lambda fit: fit.chi2)
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
         """Expand those of the `seeds` that only drift, before anything dear is done; whether that is the end.
@@ -197,7 +279,7 @@ class Search:
             if not seed.explanation.variants:
                 self.expand(seed)
                 if self._stopped_early(size):
-                    self.refine(self.of_size(size))
+                    self._refine_leading(size)
                 if self._complete(size) or self.exhausted:
                     return True
         return False
@@ -253,7 +335,7 @@ class Search:
         in_reach = reached.explanation.size <= self.beam.depth
         if in_reach:
             self.add(reached.explanation, reached.values)
-        in_vain = self.beam.resigns and not self.beside.open and self._least() >= NEARLY
+        in_vain = self.beam.resigns and not (in_reach and self.beside.open) and self._least() >= NEARLY
         if in_reach:
             fit = self.fits[reached.explanation]
             if fit.ratio < NEARLY * self._least() and not in_vain:
@@ -266,8 +348,9 @@ class Search:
         return False
 
     def _nearest(self) -> Fit:
-        """What leaves least so far, of any size."""
-        return min(list(self.fits.values()), key=lambda fit: fit.chi2)
+        """What leaves least so far, of what is added one by one."""
+        fits = (fit for fit in list(self.fits.values()) if fit.explanation.size <= self.beam.depth)
+        return min(fits, key=lambda fit: fit.chi2)
 
     def _least(self) -> float:
         """The least training error over noise so far."""
@@ -289,7 +372,9 @@ class Search:
             bases = {explanation: begin for explanation, begin in grown if explanation is not None}
             fits = between_rests(self.whole, variant, ripple, bases, self.pool)
             for fit in map(self.keep, fits):
-                if fit.ratio < NEARLY and not self._complete(fit.explanation.size):
+                begin = min(bases[fit.explanation], self._drifted(), key=lambda each: each.chi2)
+                worth = fit.ratio < NEARLY and _far_below(fit, begin)
+                if worth and not self._complete(fit.explanation.size):
                     self._refine_alone(fit)
 
     def expand(self, seed: Fit) -> list[Fit]:
@@ -327,7 +412,7 @@ class Search:
             if adequate(brief) and jumps(fit.explanation) and not adequate(fit)
         ]
         self.refine(stopped)
-        return fits
+        return [self.fits[fit.explanation] for fit in fits]
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
         """Fit an explanation and keep it if it is the best of its kind so far."""
@@ -340,6 +425,16 @@ class Search:
         if known is None or fit.chi2 < known.chi2:
             self.fits[fit.explanation] = fit
         return self.fits[fit.explanation]
+
+    def _refine_leading(self, size: int) -> None:
+        """Refine what leads among explanations of a `size`.
+
+        Not where it leaves nearly as much as something smaller: then it is not the truth that stopped early.
+        """
+        leading = self.best_of_size(size)
+        smaller = min((fit for less in range(size) for fit in self.of_size(less)[:1]), key=lambda fit: fit.chi2)
+        if leading is not None and (adequate(leading) or _far_below(leading, smaller)):
+            self.refine(self.of_size(size))
 
     def refine(self, fits: Iterable[Fit]) -> None:
         """Search other local minima of the fits of one size that may gain by it, once each."""
@@ -369,8 +464,14 @@ class Search:
         """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects."""
         best = self.best_of_size(0)
         assert best is not None
-        for size in range(1, (self.beam.depth if largest is None else largest) + 1):
-            rivals = self.of_size(size)[: self.beam.width]
+        depth = self.beam.depth if largest is None else largest
+        sizes = {fit.explanation.size for fit in list(self.fits.values())}
+        for size in sorted(sizes - {0}):
+            rivals = [
+                fit
+                for fit in self.of_size(size)[: self.beam.width]
+                if size <= depth or (largest is None and adequate(fit))
+            ]
             best = next((fit for fit in rivals if betters(fit, best, self.whole)), best)
         return min(tied(best, self.of_size(best.explanation.size), self.whole), key=_preference)
 
@@ -398,7 +499,8 @@ class Search:
         """
         while (best := self.preferred()).explanation not in self.stood:
             self.stood.add(best.explanation)
-            if best.explanation.size > 1 and jumps(best.explanation) and not accounts_for_all(best, self.data):
+            may_gain = best.ratio < NEARLY and not accounts_for_all(best, self.data)
+            if best.explanation.size > 1 and jumps(best.explanation) and may_gain:
                 self._refine_alone(best)
                 best = self.fits[best.explanation]
             for quantity in quantities(best.explanation):
@@ -427,6 +529,11 @@ def _drifting_too(rests: Iterable[Explanation], drifts: tuple[str, ...]) -> list
     """Each of the `rests` with each of the `drifts`."""
     found = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
     return [each for each in dict.fromkeys(canonical(each, drifts) for each in found) if each is not None]
+
+
+def _far_below(fit: Fit, smaller: Fit) -> bool:
+    """Whether a fit leaves far less beyond the noise than a smaller one: it may be the truth that stopped early."""
+    return fit.ratio**2 - 1.0 < LEADING * (smaller.ratio**2 - 1.0)
 
 
 def _near(fit: Fit, best: Fit) -> bool:

@@ -10,7 +10,7 @@ from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.growing import drifted, grown
 from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
-from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange
+from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange, unseen
 from pierburg_ros.diagnosis.search.selection import PROMISING, SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle
@@ -71,15 +71,17 @@ def _approached(weighing: Weighing, begin: Scored, known: Iterable[Fit], progres
     """Ever likelier explanations: quantities added one by one to where they `begin`, then what is `known`.
 
     Beside a discrepancy as large as all that is missing, a descent sees little of an effect: what is known to come
-    nearest without one goes on where it is likelier than all that was added. It does not begin there: what is nearest
-    of its size may be what bends most, and few quantities lead from there to what is there.
+    nearest without one goes on where it is likelier than all that was added, on samples that validate as well: as where
+    many numbers of a description are off. It does not begin there: what is nearest of its size may be what bends most,
+    and few quantities lead from there to what is there.
     """
     data, nominal, reached = weighing.data, weighing.nominal, begin
     for told in _added(weighing, begin, progress):
         reached = told.scored
         yield told
     nearest = _nearest(fit for fit in known if not strange(fit, data, nominal))
-    near = [each for each in plausible(nearest, data, nominal, weighing.pool) if _likelier(each, reached)]
+    likelier = (each for each in plausible(nearest, data, nominal, weighing.pool) if _likelier(each, reached))
+    near = [each for each in likelier if unseen(data, each.fit) < unseen(data, reached.fit)]
     if near:
         told = weighing.needed(min(near, key=_price))
         yield told
@@ -116,7 +118,7 @@ def _nearest(known: Iterable[Fit]) -> list[Fit]:
     best: dict[int, Fit] = {}
     for fit in known:
         size = fit.explanation.size
-        if fit.explanation.changed is None and 0 < size <= MOST and (size not in best or fit.chi2 < best[size].chi2):
+        if fit.explanation.changed is None and size and (size not in best or fit.chi2 < best[size].chi2):
             best[size] = fit
     return list(best.values())
 

@@ -215,8 +215,8 @@ class _Loop:
     def _dragged(self, width: float, duty: Signal) -> Signal:
         behind, ones = np.zeros_like(self.angle), np.ones_like(self.angle)
         for _ in range(SETTLED):
-            weights = _weights(self.angle - self.setpoint - behind, duty, ones, self.free)
-            acted_on = self.setpoint + weights[0] * duty + weights[1]
+            by, offset = _weights(self.angle - self.setpoint - behind, duty, ones, self.free)
+            acted_on = self.setpoint + by * duty + offset
             behind = _dragged(acted_on, self.angle, self.free, 0.5 * width) - acted_on
         return _left(self.angle - self.setpoint - behind, duty, ones, self.free)
 
@@ -228,18 +228,25 @@ def _least(residuals: Iterable[Signal]) -> Signal:
 
 def _left(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> Signal:
     """What two columns leave of a target, at the samples `kept`."""
-    weights = _weights(target, by_duty, constant, kept)
-    return np.asarray((target - weights[0] * by_duty - weights[1] * constant)[kept])
+    by, offset = _weights(target, by_duty, constant, kept)
+    return np.asarray((target - by * by_duty - offset * constant)[kept])
 
 
 def _mean_square(residual: Signal) -> float:
     return float(np.mean(np.square(residual)))
 
 
-def _weights(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> Signal:
-    """Weights of two columns by least squares."""
-    known = np.stack([by_duty[kept], constant[kept]], axis=1)
-    return np.asarray(np.linalg.lstsq(known, target[kept], rcond=None)[0])
+def _weights(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> tuple[float, float]:
+    """Weights of two columns by least squares; of a duty that tells no more than the constant it is 0.
+
+    By Gram-Schmidt, for it is asked thousands of times: a decomposition takes twenty times as long.
+    """
+    known, duty, other = target[kept], by_duty[kept], constant[kept]
+    square = float(other @ other)
+    own = duty - float(duty @ other) / square * other
+    rest = float(own @ own)
+    by = float(known @ own) / rest if rest > np.finfo(float).eps * float(duty @ duty) else 0.0
+    return by, float((known - by * duty) @ other) / square
 
 
 @kernel

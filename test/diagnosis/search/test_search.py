@@ -15,7 +15,7 @@ from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
-from pierburg_ros.diagnosis.search.selection import TIED
+from pierburg_ros.diagnosis.search.selection import TIED, adequate
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.estimation.data import Data
@@ -75,6 +75,29 @@ def test_explanations_grow_no_deeper_than_the_beam() -> None:
     assert found.chosen.ratio > 1.1
 
 
+GUESSES = {"armature_resistance": 5.2, "spring_preload": 0.3, "coulomb_friction": 0.16, "spring_stiffness": 0.11}
+
+
+@pytest.mark.search
+@pytest.mark.parametrize("effects", [{}, {"sensor_lag.time_constant": 0.012}])
+def test_a_description_off_in_four_numbers_hides_no_effect_and_stands_for_none(
+    pool: Executor, effects: dict[str, float]
+) -> None:
+    found = Search(data_on(recording({**GUESSES, **effects})), NOMINAL, pool).run()
+    assert adequate(found)
+    assert found.explanation.size <= 4 + len(effects)
+    assert found.explanation.variants == ((LAG,) if effects else ())
+    assert all(found.values[name] == pytest.approx(value, rel=0.02) for name, value in effects.items())
+
+
+@pytest.mark.search
+def test_one_effect_goes_before_two_drifts_that_do_the_same(pool: Executor) -> None:
+    """Viscous friction is a drift of resistance and supply voltage."""
+    data = data_on(recording({"viscous_friction.coefficient": 0.03, "spring_preload": 0.32}))
+    found = Search(data, NOMINAL, pool)
+    assert found.run().explanation == Explanation(("spring_preload",), (VISCOUS,))
+
+
 class Grown(Search):
     """A search that fits nothing: it keeps from which explanations it was asked to grow."""
 
@@ -107,6 +130,9 @@ class Grown(Search):
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         self.before_ripples.setdefault(seeds[0].explanation.size + 1, [*self.seeds])
+
+    def _all_drift(self) -> bool:
+        return False
 
     def _likeliest_accounts_for_all(self) -> bool:
         self.resigned = self.beam.resigns
