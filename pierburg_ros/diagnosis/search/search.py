@@ -265,9 +265,10 @@ class Search:
         return min(filter(None, fits), key=lambda fit: fit.chi2)
 
     def _drifted(self, but: Explanation | None = None) -> Fit:
-        """What leaves least so far where parameters drift and nothing else, without one explanation that does."""
-        fits = (fit for fit in list(self.fits.values()) if not fit.explanation.variants and not fit.explanation.changed)
-        return min((fit for fit in fits if fit.explanation != but or not fit.explanation.size), key=lambda fit: fit.chi2)
+        """What leaves least so far where parameters drift, if any, and nothing else; one explanation does not count."""
+        own = (fit.explanation for fit in list(self.fits.values()))
+        drifted = (each for each in own if not each.variants and not each.changed and (each != but or not each.size))
+        return min((self.fits[each] for each in drifted), key=lambda fit: fit.chi2)
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
         """Expand those of the `seeds` that only drift, before anything dear is done; whether that is the end.
