@@ -82,6 +82,10 @@ def search(
         found.progress = progress
         chosen = found.preferred() if found.fits else found.add(Explanation())
         recalibrated = found.recalibrated(pool)
+        if adequate(recalibrated):
+            # a search that was stopped may not have come to it
+            found.keep(recalibrated)
+            chosen = found.preferred()
     result = Found(
         found.data,
         nominal,
