@@ -19,7 +19,7 @@ WITH_REMAINDER = ("beside", "remainder")
 WITH_GUESSES = ("guesses", "beside_guesses")
 """A description of which four numbers are off, and one effect beside such a one."""
 KINDS = (*CATALOGUE, "consistent", "drift", "change", "two", "outside", *WITH_REMAINDER, *WITH_GUESSES)
-"""In this order, by which trials are drawn."""
+"""Trials are drawn by the place of their kind: a new one comes last."""
 BESIDE = tuple(effect for effect in CATALOGUE if effect != "sensor_quantization")
 """Effects that stand beside a remainder or guesses, in turn; steps of the converter are read from the samples."""
 OVER_GRAPH = {**dict.fromkeys(CATALOGUE, 1), "consistent": 3, "drift": 3}

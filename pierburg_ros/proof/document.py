@@ -71,10 +71,10 @@ def headline(run: Run) -> dict[str, Share]:
         "Two effects: verdict and both names": tally.share(kind(results, "two"), lambda r: r["right"]),
         "Outside the catalogue: unexplained": tally.share(kind(results, "outside"), lambda r: r["right"]),
         "Effect beside four wrong numbers, that the recording shows: verdict and exact name": tally.share(
-            kind(results, "beside_guesses"), lambda r: r["right"] if r["shown"] else None
+            kind(results, "beside_guesses"), tally.right_if_shown
         ),
         "Effect beside a remainder, moving the signal more than that: exact name": tally.share(
-            kind(results, "beside"), lambda r: r["right"] if r["shown"] else None
+            kind(results, "beside"), tally.right_if_shown
         ),
         "Remainder alone: nothing named": tally.share(kind(results, "remainder"), lambda r: r["right"]),
         "Recordings given names of which one is not there": tally.share(results, tally.false_name),

@@ -33,6 +33,11 @@ def shown(results: Iterable[Result]) -> list[Result]:
     return [r for r in results if r["kind"] in CATALOGUE and r["shown"]]
 
 
+def right_if_shown(result: Result) -> bool | None:
+    """Whether a trial is right; None where its recording does not show what is hidden."""
+    return bool(result["right"]) if result["shown"] else None
+
+
 def false_name(result: Result) -> bool | None:
     """Whether an effect is named that is not there; None where none is named."""
     return bool(set(result["named"]) - set(result["concealed"])) if result["named"] else None

@@ -62,7 +62,7 @@ class Trial:
     """Everything that makes a trial repeatable: what is concealed, and how it is recorded."""
 
     name: str
-    kind: str  # the catalogue effect's id, or: consistent, drift, change, two, outside
+    kind: str  # one of KINDS in concealment.py, or of dirt
     seed: int
     effects: Mapping[str, float]  # flat dotted names of the concealed physics, in the catalogue or outside it
     drifted: Mapping[str, float]

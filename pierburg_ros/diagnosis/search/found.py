@@ -80,12 +80,13 @@ def search(
     with workers(jobs) as pool:
         found = done or (begun[0] if begun else Search(data, nominal, pool))
         found.progress = progress
-        chosen = found.preferred() if found.fits else found.add(Explanation())
+        if not found.fits:
+            found.add(Explanation())
         recalibrated = found.recalibrated(pool)
         if adequate(recalibrated):
             # a search that was stopped may not have come to it
             found.keep(recalibrated)
-            chosen = found.preferred()
+        chosen = found.preferred()
     result = Found(
         found.data,
         nominal,

@@ -60,9 +60,10 @@ class Beam:
     """How wide, how deep and how long a search goes.
 
     Up to `width` explanations of one size are grown further, besides every single drift, and explanations have up to
-    `depth` quantities. Of all additions to them, the `ahead` most promising are fitted before the others. Once
-    `budget` candidates have been fitted, explanations no longer grow. Where these leave something, and so does what is
-    likeliest beside a remainder, a search that `resigns` fits no others, or not for long where little is left.
+    `depth` quantities, unless all that may drift does. Of all additions to them, the `ahead` most promising are fitted
+    before the others. Once `budget` candidates have been fitted, explanations no longer grow. Where these leave
+    something, and so does what is likeliest beside a remainder, a search that `resigns` fits no others, or not for long
+    where little is left.
     """
 
     width: int = 3
@@ -227,13 +228,11 @@ class Search:
             if not adequate(larger) and not _far_below(larger, best):
                 return False
             best = larger
-        fewest = self._drifting_fewer(best)
-        self._acting_instead(fewest)
+        self._acting_instead(self._drifting_fewer(best))
         return True
 
     def _drifting_fewer(self, best: Fit) -> Fit:
         """Fit the effects of what accounts for all with ever fewer drifts, as long as these do; the last that does."""
-        self.keep(best)
         for count in range(len(best.explanation.drifted) - 1, -1, -1):
             begins = drifting_fewer(best, self.whole, self.drifts, count)[:FEWER]
             fewer = min(self.pool.map(lambda begin: self.add(*begin), begins), key=lambda fit: fit.chi2)
@@ -433,7 +432,8 @@ class Search:
         Not where it leaves nearly as much as something smaller: then it is not the truth that stopped early.
         """
         leading = self.best_of_size(size)
-        smaller = min((fit for less in range(size) for fit in self.of_size(less)[:1]), key=lambda fit: fit.chi2)
+        fits = (fit for fit in list(self.fits.values()) if fit.explanation.size < size)
+        smaller = min(fits, key=lambda fit: fit.chi2)
         if leading is not None and (adequate(leading) or _far_below(leading, smaller)):
             self.refine(self.of_size(size))
 
@@ -462,17 +462,17 @@ class Search:
         self.fits[fit.explanation] = refined(estimator, fit)
 
     def preferred(self, largest: int | None = None) -> Fit:
-        """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects."""
+        """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects.
+
+        Without a largest size what has more quantities than the beam is deep counts where it accounts for all.
+        """
         best = self.best_of_size(0)
         assert best is not None
-        depth = self.beam.depth if largest is None else largest
-        sizes = {fit.explanation.size for fit in list(self.fits.values())}
-        for size in sorted(sizes - {0}):
-            rivals = [
-                fit
-                for fit in self.of_size(size)[: self.beam.width]
-                if size <= depth or (largest is None and adequate(fit))
-            ]
+        most = self.beam.depth if largest is None else largest
+        for size in sorted({explanation.size for explanation in list(self.fits)} - {0}):
+            rivals = self.of_size(size)[: self.beam.width]
+            if size > most:
+                rivals = [fit for fit in rivals if largest is None and adequate(fit)]
             best = next((fit for fit in rivals if betters(fit, best, self.whole)), best)
         return min(tied(best, self.of_size(best.explanation.size), self.whole), key=_preference)
 

@@ -80,8 +80,9 @@ def _approached(weighing: Weighing, begin: Scored, known: Iterable[Fit], progres
         reached = told.scored
         yield told
     nearest = _nearest(fit for fit in known if not strange(fit, data, nominal))
-    likelier = (each for each in plausible(nearest, data, nominal, weighing.pool) if _likelier(each, reached))
-    near = [each for each in likelier if unseen(data, each.fit) < unseen(data, reached.fit)]
+    ahead = [each for each in plausible(nearest, data, nominal, weighing.pool) if _likelier(each, reached)]
+    left = unseen(data, reached.fit) if ahead else 0.0
+    near = [each for each in ahead if unseen(data, each.fit) < left]
     if near:
         told = weighing.needed(min(near, key=_price))
         yield told

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, canonical
+from pierburg_ros.estimation.explanation import Explanation
 
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
@@ -35,8 +35,7 @@ def drifting_fewer(fit: Fit, estimator: Estimator, drifts: Sequence[str], count:
     are nominal again, and those in the combination, and the effects, make up for it. In logarithms that is exact for
     parameters that the recordings tell only by their products and ratios.
     """
-    everything = canonical(Explanation(tuple(drifts), fit.explanation.variants), drifts)
-    assert everything is not None
+    everything = Explanation(tuple(drifts), fit.explanation.variants)
     at, coordinates = estimator.at(everything, fit.values), estimator.coordinates(everything)
     begin = at.solution.point
     back = coordinates.point(estimator.nominal.values) - begin

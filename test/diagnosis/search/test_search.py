@@ -91,6 +91,14 @@ def test_a_description_off_in_four_numbers_hides_no_effect_and_stands_for_none(
 
 
 @pytest.mark.search
+def test_a_search_that_is_over_too_soon_still_tells_that_all_drift() -> None:
+    found = search(data_on(recording(GUESSES)), NOMINAL, beam=Beam(budget=10))
+    assert found.exhausted
+    assert adequate(found.chosen) and not found.chosen.explanation.variants
+    assert found.chosen.explanation == found.recalibrated.explanation
+
+
+@pytest.mark.search
 def test_one_effect_goes_before_two_drifts_that_do_the_same(pool: Executor) -> None:
     """Viscous friction is a drift of resistance and supply voltage."""
     data = data_on(recording({"viscous_friction.coefficient": 0.03, "spring_preload": 0.32}))
