@@ -24,8 +24,8 @@ from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import Found, search, settled_on
-from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.supported import confirmed_beside
 from pierburg_ros.diagnosis.search.tried import Progress, staged

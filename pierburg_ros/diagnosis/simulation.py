@@ -15,8 +15,8 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis, Simulated, Simulation
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT

@@ -14,7 +14,7 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.estimation.least_squares import FULL, TOLERANCE, Map, Solution, jacobian, minimise
-from pierburg_ros.estimation.likelihood import counted, repetition
+from pierburg_ros.estimation.likelihood import FORMULATION, beyond, counted, repetition, structure
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.estimation.rests import cut_at_rests
 from pierburg_ros.estimation.run import Switch
@@ -29,8 +29,9 @@ beyond."""
 class Fit:
     """An explanation with its best values by dotted name, the model with them, and the one that takes over if any.
 
-    `half_step` is half a step of the converter over the noise, 0 where steps are fine. `refined`: the cost has been
-    searched for other local minima.
+    `half_step` is half a step of the converter over the noise, 0 where steps are fine. `unlike` [noise, root mean
+    square] is what lasts and yet is no evidence: what of the noise does (`Data`), and what simulations may differ by.
+    `refined`: the cost has been searched for other local minima.
     """
 
     explanation: Explanation
@@ -39,6 +40,7 @@ class Fit:
     switch: Switch | None
     solution: Solution
     half_step: float
+    unlike: float = 0.0
     refined: bool = False
 
     @property
@@ -60,6 +62,11 @@ class Fit:
     def repetition(self) -> float:
         """Samples of the residual that count as one, 1 for white noise."""
         return repetition(self.solution.residual)
+
+    @cached_property
+    def structure(self) -> float:
+        """What speaks for more than noise in the residual, in -2 log likelihood."""
+        return structure(beyond(self.solution.residual, self.half_step), self.unlike)
 
     @property
     def spread(self) -> float:
@@ -193,7 +200,10 @@ class Estimator:
     def _fitted(self, explanation: Explanation, coordinates: Coordinates, solution: Solution) -> Fit:
         values = coordinates.values(solution.point)
         model, switch = self.models(explanation, values)
-        return Fit(explanation, {**model.values, **values}, model, switch, solution, self.data.half_step)
+        data = self.data
+        formulation = FORMULATION * data.scales.reading if explanation.variants else 0.0
+        unlike = float(np.hypot(data.unlike, formulation)) / data.noise
+        return Fit(explanation, {**model.values, **values}, model, switch, solution, data.half_step, unlike)
 
 
 def forgiven(residual: Signal) -> Signal:

@@ -33,6 +33,8 @@ LUMPS = ("armature_resistance", "supply_voltage", "spring_preload", "coulomb_fri
 """These four reach every change of sliding motion's four lumps; the others repeat them."""
 VISIBLE = 100.0
 """Squared distance [1] from which an effect counts as shown: ten standard deviations."""
+REFITS = 60
+"""Steps of a refit, at most: most end by themselves, those of four wrong numbers and an effect after up to 40."""
 PERIODIC = ("phase",)
 
 
@@ -79,7 +81,7 @@ def refitted(target: Signal, values: Mapping[str, float], names: Sequence[str], 
         fitted = {name: values[name] * float(np.exp(log)) for name, log in zip(names, logs, strict=True)}
         return ideal({**values, **fitted}, run) - target
 
-    found = least_squares(left, np.zeros(len(names)), bounds=(-0.7, 0.7), diff_step=3e-3, max_nfev=12)
+    found = least_squares(left, np.zeros(len(names)), bounds=(-0.7, 0.7), diff_step=3e-3, max_nfev=REFITS)
     return np.asarray(found.fun)
 
 

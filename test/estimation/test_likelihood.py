@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.search.selection import ADEQUATE, EXPLAINED
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, adequate
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.likelihood import counted, repetition
+from pierburg_ros.estimation.likelihood import CLOSE, EXPLAINED, counted, repetition, structure
 
 
 def stepped(step: float, noise: float) -> Data:
@@ -43,7 +43,7 @@ def test_where_in_a_step_the_shaft_rests_is_no_evidence() -> None:
 def test_a_valve_that_rests_off_the_middle_of_steps_is_still_explained() -> None:
     fit = Estimator(stepped(0.045, 0.001), NOMINAL).fit(Explanation())
     assert np.sqrt(fit.chi2 / fit.solution.residual.size) > EXPLAINED
-    assert fit.ratio < ADEQUATE
+    assert adequate(fit)
 
 
 def test_white_residuals_count_in_full() -> None:
@@ -56,3 +56,37 @@ def test_what_is_said_many_times_counts_once(times: int) -> None:
     """White noise, each value held for n samples, has the autocorrelation 1 - k / n: one and twice its sum is n."""
     values = np.repeat(np.random.default_rng(6).standard_normal(40_000 // times), times)
     assert repetition(values) == pytest.approx(times, rel=0.1)
+
+
+def test_white_noise_of_any_size_has_no_structure() -> None:
+    for seed in range(20):
+        assert structure(7.0 * np.random.default_rng(seed).standard_normal(20_000)) < 0.4 * SIGNIFICANT
+
+
+def test_noise_that_a_filter_smears_has_none_either() -> None:
+    noise = np.random.default_rng(3).standard_normal(20_001)
+    assert structure(noise[1:] + 0.3 * noise[:-1]) < SIGNIFICANT
+
+
+@pytest.mark.parametrize("length", [CLOSE * 4, 400, 2000])
+def test_structure_is_the_likelihood_ratio_of_random_effects(length: int) -> None:
+    """With m blocks whose means vary v times as much as those of noise it is m (v - 1 - ln v)."""
+    random, size = np.random.default_rng(4), 0.3
+    count = 20_000 // length
+    lasting = np.repeat(random.standard_normal(count), length)
+    lasting *= size / np.sqrt(np.mean(lasting**2))
+    varies = 1.0 + length * size**2
+    found = structure(random.standard_normal(lasting.size) + lasting)
+    assert found > 0.5 * count * (varies - 1.0 - np.log(varies)) > SIGNIFICANT
+
+
+def test_an_error_of_the_allowed_size_is_no_structure() -> None:
+    random = np.random.default_rng(5)
+    lasting = 0.3 * np.repeat(random.standard_normal(100), 200)
+    residual = random.standard_normal(20_000) + lasting
+    assert structure(residual) > SIGNIFICANT
+    assert structure(residual, allowed=0.35) < SIGNIFICANT
+
+
+def test_a_residual_of_few_samples_tells_none() -> None:
+    assert structure(np.ones(3)) == structure(np.ones(100)) == 0.0

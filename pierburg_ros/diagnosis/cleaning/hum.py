@@ -26,8 +26,9 @@ deviations at 500 Hz, and two frequencies are told apart to 0.2 Hz."""
 CERTAIN = 30.0
 """Gain in chi-squared from which a line is there. Derived: of the 2000 lines that are tried in noise one gains as much
 with 6e-4, twice `ln(2000)` being 15."""
-HEARD = 0.35
-"""Amplitude, in noises, from which it is taken out. Derived: it adds 3 % to the error, `ADEQUATE`."""
+HEARD = 0.25
+"""Amplitude, in noises, from which it is taken out. Measured: of n = 29 weaker lines, 50 to 180 Hz at 200 to
+2000 Hz, none speaks for an error that lasts with more than 32, half of what tells one."""
 
 
 @dataclass(frozen=True)

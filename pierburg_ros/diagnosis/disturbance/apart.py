@@ -15,8 +15,8 @@ from pierburg_ros.diagnosis.disturbance.clock import other_clock
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Slow, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts

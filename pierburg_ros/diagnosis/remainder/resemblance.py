@@ -8,10 +8,10 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
-from pierburg_ros.diagnosis.search.selection import unstructured
+from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Discrepancy
-from pierburg_ros.estimation.likelihood import repetition
+from pierburg_ros.estimation.likelihood import structure
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 
@@ -33,7 +33,7 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
     The variable over whose ranges the mean of the residual varies most, beyond what it does with the residual's blocks
     in random order.
     """
-    if unstructured(rms(residual) / data.noise, repetition(residual)):
+    if rms(residual) <= data.noise or structure(residual, data.unlike) < SIGNIFICANT:
         return "nothing that is told from the noise"
     above = math.sqrt(rms(residual) ** 2 - data.noise**2)
     size = f"{above:.2g} {data.actuator.unit}"

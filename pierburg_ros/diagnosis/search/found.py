@@ -8,10 +8,14 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from pierburg_ros.deadline import Deadline
+from pierburg_ros.diagnosis.search.beam import Beam
+from pierburg_ros.diagnosis.search.needed import needed
+from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
-from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
+from pierburg_ros.diagnosis.search.search import Resigned, Search
 from pierburg_ros.diagnosis.search.selection import adequate, overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
+from pierburg_ros.diagnosis.search.together import recalibrated
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -82,11 +86,11 @@ def search(
         found.progress = progress
         if not found.fits:
             found.add(Explanation())
-        recalibrated = found.recalibrated(pool)
-        if adequate(recalibrated):
+        again = recalibrated(found, pool)
+        if adequate(again):
             # a search that was stopped may not have come to it
-            found.keep(recalibrated)
-        chosen = found.preferred()
+            found.keep(again)
+        chosen = needed(found.preferred(), found, pool)
     result = Found(
         found.data,
         nominal,
@@ -95,7 +99,7 @@ def search(
         chosen,
         chosen,
         {},
-        recalibrated,
+        again,
         found.exhausted,
         found.beside,
     )
@@ -119,7 +123,7 @@ def _grown(
             begun[-1].run()
         if not begun[-1].resigned:
             fit_rivals(begun[-1], begun[-1].preferred())
-            begun[-1].pruned()
+            pruned(begun[-1])
     return begun[-1]
 
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.linear import redated
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.selection import ADEQUATE, PROMISING, adequate, complete
+from pierburg_ros.diagnosis.search.selection import PROMISING, adequate
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.likelihood import EXPLAINED
 
 ROUNDS = 4
 """Iterations after which the best are chosen for a whole fit; after half of them those far behind fall out. Measured:
@@ -55,7 +56,7 @@ def winners(
     if most is not None:
         kept = _best_of_each(kept)[:most]
     entries = _best_of_each(list(pool.map(lambda entry: _second(entry, progress), kept)))
-    if entries and not complete(entries[0].fit):
+    if entries and not adequate(entries[0].fit):
         near = NEAR * entries[0].fit.ratio
         entries = _best_of_each(list(pool.map(lambda entry: _dated(entry, near), entries)))
     nearest = entries[0].fit.ratio if entries else 0.0
@@ -96,7 +97,7 @@ def _not_behind(entries: Sequence[Entry], best: Mapping[Estimator, float]) -> li
 
     def stays(entry: Entry) -> bool:
         ahead = leading[entry.candidate.estimator]
-        spared = entry.candidate.drifts or (entry.candidate.jumps and ahead > ADEQUATE)
+        spared = entry.candidate.drifts or (entry.candidate.jumps and ahead > EXPLAINED)
         return spared or entry.fit.ratio < BEHIND * max(ahead, 1.0)
 
     return [entry for entry in entries if stays(entry)]

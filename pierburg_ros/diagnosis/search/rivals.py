@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+from pierburg_ros.diagnosis.search.attempts import Attempts
 from pierburg_ros.diagnosis.search.candidates import may_change, with_drifts
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
-from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.diagnosis.search.selection import alike, complete, gains_enough
+from pierburg_ros.diagnosis.search.selection import adequate, alike, gains_enough
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Fit
@@ -31,7 +31,7 @@ FADING = (0.75, 0.5, 0.25, 0.0)
 step the others would have to take over all of it, and events would jump. Not varied."""
 
 
-def fit_rivals(search: Search, best: Fit) -> None:
+def fit_rivals(attempts: Attempts, best: Fit) -> None:
     """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters.
 
     A load that never ends is a parameter that changed when it began.
@@ -39,32 +39,32 @@ def fit_rivals(search: Search, best: Fit) -> None:
     """
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
-        search.refine(search.expand(search.fits.get(rest) or search.add(rest)))
+        attempts.refine(attempts.expand(attempts.fits.get(rest) or attempts.add(rest)))
         counts = (1, 2) if isinstance(quantity, Variant) else (1,)
-        rivals = [each for count in counts for each in with_drifts(rest, search.drifts, count)]
-        rivals += _by_a_change(rest, quantity, search)
-        list(search.pool.map(partial(_tried, search, rest, quantity, best), dict.fromkeys(rivals)))
-        fits = (search.fits[rival] for rival in rivals if rival in search.fits)
+        rivals = [each for count in counts for each in with_drifts(rest, attempts.drifts, count)]
+        rivals += _by_a_change(rest, quantity, attempts)
+        list(attempts.pool.map(partial(_tried, attempts, rest, quantity, best), dict.fromkeys(rivals)))
+        fits = (attempts.fits[rival] for rival in rivals if rival in attempts.fits)
         # what lacks less than one more quantity has to gain may lack it by its local minimum alone
-        near = (fit for fit in fits if not complete(best) or not gains_enough(fit, best, 1, search.data))
-        search.refine(near)
+        near = (fit for fit in fits if not adequate(best) or not gains_enough(fit, best, 1))
+        attempts.refine(near)
 
 
-def _tried(search: Search, rest: Explanation, quantity: Quantity, best: Fit, rival: Explanation) -> None:
+def _tried(attempts: Attempts, rest: Explanation, quantity: Quantity, best: Fit, rival: Explanation) -> None:
     """Try a `rival` of a `quantity` of `best`, which has the `rest` beside it."""
-    known = search.fits.get(rival)
+    known = attempts.fits.get(rival)
     if isinstance(quantity, Variant) and (known is None or known.misfit > alike(best)):
-        _take_over(search, rival, quantity, best)
-    elif jumps(rest) and not complete(best):
+        _take_over(attempts, rival, quantity, best)
+    elif jumps(rest) and not adequate(best):
         # grown on the rest, its effects have first been bent to stand for the drift
-        search.add(rival, best.values)
+        attempts.add(rival, best.values)
 
 
-def _by_a_change(rest: Explanation, quantity: Quantity, search: Search) -> list[Explanation]:
+def _by_a_change(rest: Explanation, quantity: Quantity, attempts: Attempts) -> list[Explanation]:
     """`rest` with the parameter that may have changed at the moment at which an effect begins, if it has one."""
-    if not isinstance(quantity, Variant) or not may_change(rest, search.data):
+    if not isinstance(quantity, Variant) or not may_change(rest, attempts.data):
         return []
-    constant = _constant_part(quantity, search.nominal)
+    constant = _constant_part(quantity, attempts.nominal)
     if constant is None or _beginning(quantity) is None or constant[1] in rest.drifted:
         return []
     return [replace(rest, changed=constant[1])]
@@ -83,7 +83,7 @@ def _beginning(variant: Variant) -> str | None:
     return next(iter(moments(variant)), None)
 
 
-def _take_over(search: Search, explanation: Explanation, fading: Variant, best: Fit) -> None:
+def _take_over(attempts: Attempts, explanation: Explanation, fading: Variant, best: Fit) -> None:
     """Fit an explanation that stands for an effect of `best` by other means, if it keeps up as the effect fades.
 
     In one step the others would have to take over all of it, and events would jump. They would also jump if its other
@@ -92,20 +92,20 @@ def _take_over(search: Search, explanation: Explanation, fading: Variant, best: 
     """
     values = best.values
     for start in _at_once(explanation, fading, best):
-        search.add(explanation, start)
+        attempts.add(explanation, start)
     held = tuple(_faded(variant, best, 1.0) for variant in explanation.variants)
     for share in FADING:
         effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
         stage = Explanation(explanation.drifted, effects, explanation.changed)
         try:
-            slopes = search.first_part.at(stage, values).solution.jacobian
-            stage_fit = search.first_part.fit(stage, values, ROUNDS, slopes=slopes)
+            slopes = attempts.first_part.at(stage, values).solution.jacobian
+            stage_fit = attempts.first_part.fit(stage, values, ROUNDS, slopes=slopes)
         except InputError:
             continue
         if stage_fit.ratio > NEAR * best.ratio:
             return
         values = stage_fit.values
-    search.add(explanation, search.add(explanation, values).values)
+    attempts.add(explanation, attempts.add(explanation, values).values)
 
 
 def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[dict[str, float]]:

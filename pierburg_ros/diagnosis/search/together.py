@@ -1,21 +1,83 @@
-"""Parameters that drift together: as many as recordings tell apart, and as few as do the same."""
+"""Parameters that drift together: as many as recordings tell apart, and as few as do the same.
+
+A description of guesses is off in more numbers than can be added one by one, and what is added before they are right
+stands for them.
+"""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from concurrent.futures import Executor
 
 import numpy as np
 from scipy.linalg import qr
 
+from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
+from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.estimation.explanation import Explanation, Variant, without
 
 INDEPENDENT = 1e-3
 """A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
 Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
+FEWER = 4
+"""Combinations of as many drifting parameters that are fitted in the place of more, the best by a linear step. Work:
+each is a whole fit; not varied."""
 Begun = tuple[Explanation, dict[str, float]]
 """An explanation and the values from which it is fitted."""
+
+
+def drift_together(attempts: Attempts) -> bool:
+    """Let all drift that recordings tell apart; whether something accounts for all then.
+
+    Effects are added to that, while each leaves far less. Then as few drift as have to.
+    """
+    best = attempts.keep(recalibrated(attempts, attempts.pool))
+    while not adequate(best):
+        larger = min(_with_an_effect(best, attempts), key=lambda fit: fit.chi2, default=best)
+        if not adequate(larger) and not far_below(larger, best):
+            return False
+        best = larger
+    _in_the_place_of_two(_with_fewer(best, attempts), attempts)
+    return True
+
+
+def recalibrated(attempts: Attempts, pool: Executor) -> Fit:
+    """The nominal structure with as many of its parameters re-estimated as the recordings tell apart.
+
+    From nominal values and from what leaves least so far where parameters drift.
+    """
+    estimator = attempts.whole
+    explanation = drifting_apart(estimator, attempts.drifts)
+    starts = [attempts.nominal.values, attempts.least_drifted(but=explanation).values]
+    fits = [*pool.map(lambda start: estimator.fit(explanation, start), starts), attempts.fits.get(explanation)]
+    return min(filter(None, fits), key=lambda fit: fit.chi2)
+
+
+def _with_an_effect(seed: Fit, attempts: Attempts) -> list[Fit]:
+    """Whole fits of the effects that are most promising beside `seed`."""
+    acting = [each for each in attempts.screened(seed) if isinstance(each.addition, Variant)]
+    return attempts.race(acting, most=attempts.beam.ahead // 3)
+
+
+def _with_fewer(best: Fit, attempts: Attempts) -> Fit:
+    """Fit the effects of what accounts for all with ever fewer drifts, as long as these do; the last that does."""
+    for count in range(len(best.explanation.drifted) - 1, -1, -1):
+        begins = drifting_fewer(best, attempts.whole, attempts.drifts, count)[:FEWER]
+        fewer = min(attempts.pool.map(lambda begin: attempts.add(*begin), begins), key=lambda fit: fit.chi2)
+        if not adequate(fewer):
+            break
+        best = fewer
+    return best
+
+
+def _in_the_place_of_two(best: Fit, attempts: Attempts) -> None:
+    """Fit what is most promising in the place of any two drifts of `best`: one effect may do what both do."""
+    pairs = list(itertools.combinations(best.explanation.drifted, 2))
+    if best.explanation.size > 2 and pairs:
+        rests = (without(without(best.explanation, one), other) for one, other in pairs)
+        attempts.fit_most_promising([attempts.add(rest, best.values) for rest in rests])
 
 
 def drifting_apart(estimator: Estimator, drifts: Sequence[str]) -> Explanation:

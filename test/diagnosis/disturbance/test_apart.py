@@ -18,8 +18,8 @@ from pierburg_ros.diagnosis.disturbance.course import Course
 from pierburg_ros.diagnosis.disturbance.slow import ZERO, Supply, Zero
 from pierburg_ros.diagnosis.disturbance.wandered import Wandered, wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import search
-from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.likelihood import EXPLAINED

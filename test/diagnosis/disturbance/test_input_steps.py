@@ -37,6 +37,6 @@ def test_what_steps_may_do_counts_as_noise_and_as_no_evidence():
     apart = rounding.kept_apart(data)
     assert apart.noise == pytest.approx(np.sqrt(17.0) * data.noise)
     fit = Estimator(apart, valve).fit(Explanation())
-    assert allowance(fit, apart) == pytest.approx(16.0 / 17.0 * times.size, rel=1e-3)
+    assert allowance(fit) == pytest.approx(16.0 / 17.0 * times.size, rel=1e-3)
     settled, unsettled = (rounding.said(data, unsettled=each).remarks[-1] for each in (False, True))
     assert "which counts as noise" in settled and "no effect can be concluded" in unsettled

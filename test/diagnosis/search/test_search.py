@@ -10,11 +10,14 @@ import pytest
 from support.fits import made_up, of_chi2
 from support.recordings import NOMINAL, data_on, recording
 
+from pierburg_ros.diagnosis.search import attempts
 from pierburg_ros.diagnosis.search import search as module
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import search
+from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.search import Beam, Resigned, Search
+from pierburg_ros.diagnosis.search.search import Resigned, Search
 from pierburg_ros.diagnosis.search.selection import TIED, adequate
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.weighing import Supported
@@ -130,10 +133,10 @@ class Grown(Search):
     def refine(self, fits: object) -> None:
         pass
 
-    def _refine_alone(self, fit: object) -> None:
+    def refine_alone(self, fit: object) -> None:
         pass
 
-    def _fit_most_promising(self, seeds: object) -> None:
+    def fit_most_promising(self, seeds: object) -> None:
         pass
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
@@ -179,7 +182,7 @@ def test_what_leads_by_far_is_grown_before_others_of_its_size(
     triple = PAIRS[0].plus(ONES[3].variants[0])
 
     class Leading(Grown):
-        def _fit_most_promising(self, seeds: object) -> None:
+        def fit_most_promising(self, seeds: object) -> None:
             self.add(PAIRS[0])
 
     found = Leading(short, pool, {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, PAIRS[0]: left, triple: 0.99}, Beam())
@@ -191,7 +194,7 @@ def test_ripples_wait_for_promising_pairs_and_come_before_drifts_are_grown(short
     """Beside a drift they are found as well as alone."""
 
     class Leading(Grown):
-        def _fit_most_promising(self, seeds: object) -> None:
+        def fit_most_promising(self, seeds: object) -> None:
             self.add(PAIRS[0])
 
     found = Leading(short, pool, {NOTHING: 9.0, ONES[0]: 6.0, FRICTION: 6.1, PAIRS[0]: 4.0}, Beam(depth=2))
@@ -213,7 +216,7 @@ def test_a_ripple_is_refined_where_it_comes_near(
     found, again = made_up(ONES[0], ratio, NOMINAL), list[Fit]()
     monkeypatch.setattr(module, "ripples", lambda _: [(ONES[0].variants[0], None)])
     monkeypatch.setattr(module, "between_rests", lambda *_: [found])
-    monkeypatch.setattr(empty, "_refine_alone", again.append)
+    monkeypatch.setattr(empty, "refine_alone", again.append)
     empty._fit_ripples([empty.keep(made_up(NOTHING, 9.0, NOMINAL))])
     assert again == ([found] if refined else [])
 
@@ -322,11 +325,11 @@ def test_what_accounted_for_the_samples_it_raced_on_is_refined(
     explanation = Explanation((), (Variant(one, ("x",)),))
     base = empty.keep(made_up(NOTHING, 9.0, NOMINAL))
     candidate = Candidate(explanation, explanation.variants[0], empty.whole, base, ())
-    monkeypatch.setattr(module, "winners", lambda *_: [made_up(explanation, raced, NOMINAL)])
+    monkeypatch.setattr(attempts, "winners", lambda *_: [made_up(explanation, raced, NOMINAL)])
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, 6.0, NOMINAL)))
     given: list[Fit] = []
     monkeypatch.setattr(empty, "refine", given.extend)
-    empty._race([candidate])
+    empty.race([candidate])
     assert [fit.explanation for fit in given] == ([explanation] if refined else [])
 
 
@@ -339,7 +342,7 @@ def test_a_fit_that_stopped_just_above_the_noise_is_refined_before_more_is_added
             residual = fit.solution.residual + 0.1 * np.roll(fit.solution.residual, 1)
             return self.keep(replace(fit, solution=replace(fit.solution, residual=residual)))
 
-        def _refine_alone(self, fit: Fit) -> None:
+        def refine_alone(self, fit: Fit) -> None:
             self.keep(made_up(fit.explanation, 0.99, NOMINAL))
 
     found = Refining(short, pool, {NOTHING: 9.0, ONES[0]: 1.04, PAIRS[0]: 0.98}, Beam(depth=2))
@@ -383,7 +386,7 @@ def test_a_drift_and_an_effect_get_their_chance_from_the_values_of_three(
     found = Stopped(short, pool, {}, Beam())
     found.add(NOTHING)
     found.keep(made_up(THREE, 1.0, NOMINAL, {"coulomb_friction": ends[THREE]}))
-    assert found.pruned().explanation == PAIRS[3]
+    assert pruned(found).explanation == PAIRS[3]
 
 
 def test_what_accounts_for_all_is_not_grown(short: Data, pool: Executor) -> None:
@@ -443,7 +446,7 @@ def test_a_seed_is_expanded_once(empty: Search, monkeypatch: pytest.MonkeyPatch)
         asked.append(fit.explanation)
         return []
 
-    monkeypatch.setattr(module, "screened", screened)
+    monkeypatch.setattr(attempts, "screened", screened)
     seed = made_up(NOTHING, 2.0, NOMINAL)
     assert empty.expand(seed) == empty.expand(replace(seed)) == []
     assert asked == [NOTHING]

@@ -7,17 +7,17 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.selection import (
     SIGNIFICANT,
-    accounts_for_all,
     adequate,
     allowance,
     betters,
-    complete,
     gain,
+    names_all,
     overlooks,
     tied,
 )
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.likelihood import EXPLAINED
 
 LAG = Variant("sensor_lag", ("time_constant",))
 TRUE = {"sensor_lag.time_constant": 0.012}
@@ -32,23 +32,23 @@ def fitted(changes: dict[str, float], *explanations: Explanation) -> tuple[Estim
 def test_what_simulators_differ_by_is_a_third_of_a_millivolt() -> None:
     estimator, (lag, drift) = fitted({}, Explanation((), (LAG,)), Explanation(("spring_preload",)))
     samples = lag.solution.residual.size
-    assert allowance(lag, estimator.data) == pytest.approx(samples * (0.0003 / estimator.data.noise) ** 2, rel=0.01)
-    assert allowance(drift, estimator.data) == pytest.approx(0.0, abs=1e-9)
+    assert allowance(lag) == pytest.approx(samples * (0.0003 / estimator.data.noise) ** 2, rel=0.01)
+    assert allowance(drift) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_drift_too_small_to_be_more_than_that_is_not_named_beside_an_effect() -> None:
     both = Explanation(("spring_preload",), (LAG,))
     estimator, (lag, larger) = fitted({"spring_preload": 0.290028}, Explanation((), (LAG,)), both)
     assert gain(lag, larger) > SIGNIFICANT
-    assert accounts_for_all(lag, estimator.data)
+    assert names_all(lag)
     assert not betters(larger, lag, estimator)
 
 
 def test_a_plain_drift_beside_an_effect_betters_it() -> None:
     both = Explanation(("spring_preload",), (LAG,))
     estimator, (lag, larger) = fitted({"spring_preload": 0.292}, Explanation((), (LAG,)), both)
-    assert not accounts_for_all(lag, estimator.data)
-    assert accounts_for_all(larger, estimator.data)
+    assert not names_all(lag)
+    assert names_all(larger)
     assert betters(larger, lag, estimator)
 
 
@@ -65,10 +65,17 @@ def test_white_noise_larger_than_estimated_is_all_there_is_and_structure_is_not(
     low, explanation = replace(data, noise=0.0028), Explanation((), (LAG,))
     structured = Estimator(data, NOMINAL).fit(explanation, TRUE)
     noise = Estimator(low, NOMINAL).fit(replace(explanation, drifted=("spring_preload",)), TRUE)
-    assert 1.03 < structured.ratio < noise.ratio < 1.1
-    assert adequate(noise) and complete(noise)
-    assert not adequate(structured) and not complete(structured)
-    assert accounts_for_all(noise, low) and not accounts_for_all(structured, data)
+    assert structured.ratio < noise.ratio < EXPLAINED
+    assert adequate(noise) and names_all(noise)
+    assert not adequate(structured) and not names_all(structured)
+    assert not adequate(Estimator(replace(data, noise=0.0026), NOMINAL).fit(noise.explanation, noise.values))
+
+
+def test_an_error_that_lasts_is_all_there_is_where_the_noise_has_one() -> None:
+    data = data_on(recording({"spring_preload": 0.2901}))
+    nominal = Estimator(data, NOMINAL).fit(Explanation())
+    assert nominal.ratio < EXPLAINED and not adequate(nominal)
+    assert adequate(Estimator(replace(data, unlike=0.5 * data.noise), NOMINAL).fit(Explanation()))
 
 
 def test_what_only_the_validation_samples_show_is_overlooked() -> None:

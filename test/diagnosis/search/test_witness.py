@@ -10,8 +10,8 @@ from support.servo import LACKING, SERVO, TIME, in_loop
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.diagnosis.diagnose import evidence
 from pierburg_ros.diagnosis.remainder.standing import Standing, standing
+from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import search
-from pierburg_ros.diagnosis.search.search import Beam
 from pierburg_ros.diagnosis.search.witness import FEWEST, Witness, witnessed
 from pierburg_ros.proof.real.channels import with_effect
 from pierburg_ros.recording import Channel, Recording
