@@ -65,8 +65,9 @@ class Fit:
 
     @cached_property
     def structure(self) -> float:
-        """What speaks for more than noise in the residual, in -2 log likelihood."""
-        return structure(beyond(self.solution.residual, self.half_step), self.unlike)
+        """What speaks for an error that lasts in the residual, in -2 log likelihood; where the shaft rests steps do."""
+        rounding = self.half_step / np.sqrt(3.0)
+        return structure(beyond(self.solution.residual, self.half_step), float(np.hypot(self.unlike, rounding)))
 
     @property
     def spread(self) -> float:

@@ -31,6 +31,14 @@ def test_viscous_friction_is_absorbed_by_two_drifts_but_not_by_one(run):
     assert seen.shown
 
 
+def test_viscous_friction_beside_four_wrong_numbers_is_four_others():
+    """Of the base parameters four reach every change of sliding motion's four lumps."""
+    guessed = replace(draw("beside_guesses", 1, 901), duration=6.0)
+    assert guessed.effect_ids == ("viscous_friction",) and len(guessed.drifted) == 4
+    seen = visibility(guessed, record(guessed))
+    assert seen.distance < 1e-6 and not seen.shown
+
+
 def test_a_vanishing_effect_is_not_shown():
     faint = replace(PLAIN, effects={"sensor_lag.time_constant": 1e-6})
     assert not visibility(faint, record(faint)).shown

@@ -66,6 +66,7 @@ def document(
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(marks)
     short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
+    text = words.needless(found.needless if conclusion.verdict == "unexplained" else (), text)
     text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
     places, ranges = located(data, conclusion)
     return Diagnosis(

@@ -161,6 +161,18 @@ def summary(
     return f"Something is left {left}.{helped} {errors}"
 
 
+def needless(effects: Sequence[str], text: str) -> str:
+    """The summary, with `effects` that would account for all and are not named: an error of any shape does so too."""
+    if not effects:
+        return text
+    several = len(effects) > 1
+    listed = numbers.words(", and ".join(effects)).capitalize()
+    return (
+        f"{text} {listed} would account for what is left, but so would an error that varies slowly and that no physics "
+        f"describes: {'they are' if several else 'it is'} not named."
+    )
+
+
 def warned(data: Data, verdict: Verdict, text: str) -> str:
     """The summary after a warning where messages are missing.
 

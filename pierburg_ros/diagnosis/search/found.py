@@ -37,7 +37,7 @@ class Found:
     `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
     name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
     because its budget of candidates was spent. `beside` is what the recordings say counted against what remains, None
-    where it has not come to that.
+    where it has not come to that. `needless` are effects that would account for all, and are not needed.
     """
 
     data: Data
@@ -50,6 +50,7 @@ class Found:
     recalibrated: Fit
     exhausted: bool
     beside: Beside | None = None
+    needless: tuple[str, ...] = ()
 
     def of_size(self, size: int) -> list[Fit]:
         """The fits of explanations of `size` quantities."""
@@ -90,7 +91,8 @@ def search(
         if adequate(again):
             # a search that was stopped may not have come to it
             found.keep(again)
-        chosen = needed(found.preferred(), found, pool)
+        preferred = found.preferred()
+        chosen = needed(preferred, found, pool)
     result = Found(
         found.data,
         nominal,
@@ -102,6 +104,7 @@ def search(
         again,
         found.exhausted,
         found.beside,
+        tuple(effect for effect in preferred.explanation.effects if effect not in chosen.explanation.effects),
     )
     return settled_on(result, chosen, jobs, deadline) if adequate(chosen) else result
 

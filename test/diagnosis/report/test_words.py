@@ -6,7 +6,7 @@ from support.recordings import NOMINAL
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
-from pierburg_ros.diagnosis.report.words import advice, cautioned, reason, summary
+from pierburg_ros.diagnosis.report.words import advice, cautioned, needless, reason, summary
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
@@ -112,3 +112,11 @@ def test_what_decides_nothing_is_said_before_anything_else() -> None:
     still = Limit("no_movement", "The shaft never moves.", decisive=True)
     assert cautioned([still], "All is well.") == "Nothing can be concluded: The shaft never moves. All is well."
     assert cautioned([Limit("short", "5 s only.")], "All is well.") == "All is well."
+
+
+def test_what_would_fit_and_is_not_needed_is_said_and_not_named() -> None:
+    assert needless((), "Something is left.") == "Something is left."
+    one, two = (needless(effects, "Something is left.") for effects in (("external_load",), ("backlash", "sensor_lag")))
+    assert one.startswith("Something is left. External load would account for what is left, but so would")
+    assert one.endswith("it is not named.")
+    assert "Backlash, and sensor lag would account" in two and two.endswith("they are not named.")
