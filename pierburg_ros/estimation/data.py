@@ -14,7 +14,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.batch import Batch, batches
-from pierburg_ros.estimation.likelihood import coarse_step
+from pierburg_ros.estimation.likelihood import coarse_step, lasting_rounding
 from pierburg_ros.estimation.run import Run, Switch, parts_of, run_of
 from pierburg_ros.estimation.stamp_noise import stamp_noise
 from pierburg_ros.plant import Model
@@ -75,6 +75,7 @@ class Data:
     remarks: tuple[str, ...] = ()
     disturbed: bool = False
     unlike: float = 0.0
+    rounding: float = 0.0
 
     def kept_apart(self, size: float) -> Data:
         """With an error of such a `size` [measured unit, root mean square] as noise that is no evidence."""
@@ -196,9 +197,10 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
     stamped = float(np.median([stamp_noise(part, model) for parts, _ in cut for part in parts]))
     unknown = (Omission(number, span, UNKNOWN) for number, (_, found) in enumerate(cut) for span in found.left_out)
     finest, _ = DECLARED[STEP].expected(model.scales)
-    step = coarse_step([run.measured for run in runs], noise, finest)
+    measured = [run.measured for run in runs]
+    step, rounding = coarse_step(measured, noise, finest), lasting_rounding(measured, noise)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
-    whole = Data(model.actuator, runs, noise, step, noise, (*unknown, *without), warnings)
+    whole = Data(model.actuator, runs, noise, step, noise, (*unknown, *without), warnings, rounding=rounding)
     return whole.kept_apart(math.hypot(lost, stamped))
 
 

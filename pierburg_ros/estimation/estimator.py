@@ -30,7 +30,8 @@ class Fit:
     """An explanation with its best values by dotted name, the model with them, and the one that takes over if any.
 
     `half_step` is half a step of the converter over the noise, 0 where steps are fine. `unlike` [noise, root mean
-    square] is what lasts and yet is no evidence: what of the noise does (`Data`), and what simulations may differ by.
+    square] is what lasts and yet is no evidence: what of the noise does (`Data`), and what simulations may differ by;
+    `rounding` what steps of the converter add while the shaft rests.
     `refined`: the cost has been searched for other local minima.
     """
 
@@ -41,6 +42,7 @@ class Fit:
     solution: Solution
     half_step: float
     unlike: float = 0.0
+    rounding: float = 0.0
     refined: bool = False
 
     @property
@@ -65,9 +67,8 @@ class Fit:
 
     @cached_property
     def structure(self) -> float:
-        """What speaks for an error that lasts in the residual, in -2 log likelihood; where the shaft rests steps do."""
-        rounding = self.half_step / np.sqrt(3.0)
-        return structure(beyond(self.solution.residual, self.half_step), float(np.hypot(self.unlike, rounding)))
+        """What speaks for an error that lasts in the residual, in -2 log likelihood."""
+        return structure(beyond(self.solution.residual, self.half_step), float(np.hypot(self.unlike, self.rounding)))
 
     @property
     def spread(self) -> float:
@@ -204,7 +205,8 @@ class Estimator:
         data = self.data
         formulation = FORMULATION * data.scales.reading if explanation.variants else 0.0
         unlike = float(np.hypot(data.unlike, formulation)) / data.noise
-        return Fit(explanation, {**model.values, **values}, model, switch, solution, data.half_step, unlike)
+        rounding = data.rounding / data.noise
+        return Fit(explanation, {**model.values, **values}, model, switch, solution, data.half_step, unlike, rounding)
 
 
 def forgiven(residual: Signal) -> Signal:

@@ -50,6 +50,20 @@ def coarse_step(measured: Sequence[Signal], noise: float, least: float) -> float
     return step if step >= least and step > COARSE * unrounded else 0.0
 
 
+def lasting_rounding(measured: Sequence[Signal], noise: float) -> float:
+    """What rounding adds to samples of a shaft at rest, the same to all: its root mean square [measured unit].
+
+    All of it where there is no other noise. Noise of standard deviation s carries samples over the steps d, and leaves
+    a share of exp(-2 pi^2 s^2 / d^2), to first harmonic (Widrow and Kollar, Quantization Noise, Cambridge 2008, on
+    dither): next to nothing where two samples are nearer to each other than their noise. `noise` includes rounding.
+    """
+    step = min(float(np.min(np.diff(np.unique(values)), initial=np.inf)) for values in measured)
+    if not np.isfinite(step):
+        return 0.0
+    unrounded = max(noise**2 - step**2 / 12.0, 0.0)
+    return float(step / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * unrounded / step**2))
+
+
 def counted(residual: Signal, half_step: float) -> float:
     """Sum of squares of a residual, shape (samples,), in which half a step of the converter is no evidence.
 

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, adequate
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.likelihood import CLOSE, EXPLAINED, counted, repetition, structure
+from pierburg_ros.estimation.likelihood import CLOSE, EXPLAINED, counted, lasting_rounding, repetition, structure
 
 
 def stepped(step: float, noise: float) -> Data:
@@ -90,3 +90,30 @@ def test_an_error_of_the_allowed_size_is_no_structure() -> None:
 
 def test_a_residual_of_few_samples_tells_none() -> None:
     assert structure(np.ones(3)) == structure(np.ones(100)) == 0.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.2, 0.3, 1.0])
+def test_rounding_lasts_where_little_noise_carries_samples_over_the_steps(noise: float) -> None:
+    """The mean of rounded samples at each of many places, less the place."""
+    random = np.random.default_rng(7)
+    places = np.linspace(0.0, 10.0, 2000, endpoint=False)
+    samples = np.round(places[:, None] + noise * random.standard_normal((2000, 2000)))
+    seen = np.sqrt(np.mean((samples.mean(axis=1) - places) ** 2))
+    told = lasting_rounding([samples.ravel()[::7]], float(np.hypot(noise, np.sqrt(1.0 / 12.0))))
+    assert told == pytest.approx(seen, abs=0.07)
+
+
+def test_samples_off_any_grid_are_not_rounded() -> None:
+    assert lasting_rounding([np.random.default_rng(8).standard_normal(500)], 1.0) == 0.0
+    assert lasting_rounding([np.ones(500)], 1.0) == 0.0
+
+
+def test_an_encoder_whose_steps_are_all_its_noise_leaves_no_structure() -> None:
+    """A shaft that rests between its marks reads the same for long."""
+    given = recording({}, duration=20.0)
+    clean = data_on(given).runs[0].simulated(NOMINAL)
+    step = 0.004
+    data = data_on(replace(given, measured=np.round(np.round(clean / step) * step, 5)))
+    fit = Estimator(data, NOMINAL).fit(Explanation())
+    assert structure(fit.solution.residual) > SIGNIFICANT
+    assert adequate(fit)

@@ -33,7 +33,7 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
     The variable over whose ranges the mean of the residual varies most, beyond what it does with the residual's blocks
     in random order.
     """
-    if rms(residual) <= data.noise or structure(residual, data.unlike) < SIGNIFICANT:
+    if rms(residual) <= data.noise or structure(residual, math.hypot(data.unlike, data.rounding)) < SIGNIFICANT:
         return "nothing that is told from the noise"
     above = math.sqrt(rms(residual) ** 2 - data.noise**2)
     size = f"{above:.2g} {data.actuator.unit}"
