@@ -6,10 +6,13 @@ import pytest
 from support.fits import found_among, made_up
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.remainder.standing import _outdone
+from pierburg_ros.deadline import Deadline, OutOfTime
+from pierburg_ros.diagnosis.remainder import standing as module
+from pierburg_ros.diagnosis.remainder.standing import _outdone, standing
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.diagnosis.search.weighing import Supported
+from pierburg_ros.diagnosis.search.supported import Beside
+from pierburg_ros.diagnosis.search.weighing import Supported, Weight
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 STIFFER = {"spring_stiffness": 0.17}
@@ -47,3 +50,22 @@ def test_effects_are_judged_by_other_rules(found):
     lag = Variant("sensor_lag", ("time_constant",))
     slack = replace(SLACK, explanation=SLACK.explanation.plus(lag))
     assert not _outdone(told(found, slack), found)
+
+
+def test_what_is_confirmed_is_told_though_no_time_is_left_to_weigh_the_rest(found, monkeypatch):
+    """An explanation of nine quantities may take all of it."""
+    lag = Variant("sensor_lag", ("time_constant",))
+    fit = found.estimator.at(Explanation((), (lag,)), {"sensor_lag.time_constant": 0.012})
+    likely = scored(found.data, fit)
+    confirmed = Supported(NOMINAL, likely, {lag: Weight(500.0, 100.0)})
+    beside = Beside(likely, 1000.0, confirmed)
+
+    def endless(*_: object) -> None:
+        raise OutOfTime
+
+    monkeypatch.setattr(module, "likelier", endless)
+    monkeypatch.setattr(module, "told_apart", lambda named, *_: named)
+    deadline = Deadline(60.0)
+    stood = standing(replace(found, beside=beside), deadline=deadline)
+    assert stood.base is not None and stood.base.explanation.effects == ("sensor_lag",)
+    assert deadline.stopped
