@@ -29,8 +29,11 @@ def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:
 
 
 def _gain(best: Fit, attempts: Attempts, effect: Variant) -> float:
-    """What leaving an effect out costs in -2 log likelihood, the others fitted again beside what then remains."""
+    """What leaving an effect out costs in -2 log likelihood, the others fitted again beside what then remains.
+
+    Where white noise alone makes a residual likelier than the likeliest discrepancy that was found, there is none.
+    """
     data, nominal = attempts.data, attempts.nominal
     rest = without(best.explanation, effect)
     fit = attempts.fits.get(rest) or attempts.add(rest, best.values)
-    return settled(data, nominal, fit).cost - scored(data, best).cost
+    return min(settled(data, nominal, fit).cost, fit.chi2) - min(scored(data, best).cost, best.chi2)
