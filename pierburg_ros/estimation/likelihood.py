@@ -76,6 +76,8 @@ def counted(residual: Signal, half_step: float) -> float:
 
 def beyond(residual: Signal, half_step: float) -> Signal:
     """What of a residual, shape (samples,), half a step of the converter does not account for."""
+    if half_step == 0.0:
+        return residual
     return np.asarray(np.sign(residual) * np.maximum(np.abs(residual) - half_step, 0.0))
 
 

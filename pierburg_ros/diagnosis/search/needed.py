@@ -20,7 +20,8 @@ def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:
     """
     while names_all(best):
         variants = best.explanation.variants
-        gains = list(pool.map(partial(_gain, best, attempts), variants))
+        likely = min(scored(attempts.data, best).cost, best.chi2)
+        gains = [cost - likely for cost in pool.map(partial(_without, best, attempts), variants)]
         least, variant = min(zip(gains, variants, strict=True), key=lambda pair: pair[0])
         if least >= SIGNIFICANT:
             return best
@@ -28,12 +29,11 @@ def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:
     return best
 
 
-def _gain(best: Fit, attempts: Attempts, effect: Variant) -> float:
-    """What leaving an effect out costs in -2 log likelihood, the others fitted again beside what then remains.
+def _without(best: Fit, attempts: Attempts, effect: Variant) -> float:
+    """Minus twice the log likelihood without an effect, the others fitted again beside what then remains.
 
     Where white noise alone makes a residual likelier than the likeliest discrepancy that was found, there is none.
     """
-    data, nominal = attempts.data, attempts.nominal
     rest = without(best.explanation, effect)
     fit = attempts.fits.get(rest) or attempts.add(rest, best.values)
-    return min(settled(data, nominal, fit).cost, fit.chi2) - min(scored(data, best).cost, best.chi2)
+    return min(settled(attempts.data, attempts.nominal, fit).cost, fit.chi2)

@@ -85,10 +85,6 @@ class Search(Attempts):
         takes seconds, and beside a drift it is found as well as alone.
         """
         size = best.explanation.size
-        if size and adequate(best):
-            self.refine_alone(best)
-            if names_all(self.fits[best.explanation]):
-                return
         seeds = self._seeds(best)
         if len(seeds) > 1:
             self.fit_most_promising(seeds)
