@@ -1,1 +1,1 @@
-"""Missing physics from data: locate the mismatch, name it, model it, show the fit improve."""
+"""Missing physics from data: locate the mismatch, name it, model it, and show that the fit improves."""

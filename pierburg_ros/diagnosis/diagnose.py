@@ -44,12 +44,12 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
 APART = 0.5
-"""Share of the time left after effects have been named in which disturbances are looked for. Work: the rest is for the
-shape of what remains, and for limits; not varied."""
+"""Share of the time left after effects have been named that the search for disturbances may take. Work: the rest is for
+the shape of the remainder, and for limits; not varied."""
 
 TRYING = 0.9
-"""Share of a budget in which all is tried; the rest is for the document, its figures and files. Measured: these took 11
-s after a budget of 120 (n = 1 recording at 1 kHz); not varied."""
+"""Share of a budget that all trials may take; the rest is for the document, its figures and files. Measured: these took
+11 s after a budget of 120 s (n = 1 recording at 1 kHz); not varied."""
 
 
 def diagnose(
@@ -63,12 +63,12 @@ def diagnose(
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
-    `progress` is told what is being tried; `jobs` is the number of fits at a time, by default one for each core. After
-    `budget` [s] of an idle machine (`Deadline`), or Ctrl-C, the best verdict yet is given and marked as such; without a
-    budget it takes what it takes.
-    InputError where the recordings cannot be used. Recordings of the user's own `simulation` stand for the nominal
-    model: `nominal` is then fitted to them first. Where signals are not what they are read as, that is all that is
-    said, unless it goes on by `force`.
+    `progress` is given what is being tried. `jobs` is the number of fits at a time, by default one for each core. After
+    `budget` [s] of an idle machine (`Deadline`), or Ctrl-C, the result is the best verdict so far, marked as such.
+    Without a budget there is no time limit.
+    InputError if the recordings cannot be used. If recordings of the user's own `simulation` are given, these replace
+    the nominal model: `nominal` is fitted to them first. If signals are not what they are read as, only that is
+    reported, unless `force` is set.
     """
     each_cleaned = [cleaned(recording, number) for number, recording in enumerate(recordings)]
     recordings = [each.recording for each in each_cleaned]
@@ -105,12 +105,12 @@ def examined(
     jobs: int | None,
     deadline: Deadline,
 ) -> tuple[Found, Remainder | None]:
-    """What is found, what has disturbed a single recording set apart, and what can be said of the rest, if any."""
-    # what repeats itself with every turn is read from the balance of torques, not searched for order by order
+    """What a search finds, a disturbance of a single recording set apart, and what can be said of the rest, if any."""
+    # an effect that repeats with every turn is read from the balance of torques, not searched order by order
     turning, single = goes_around(data, nominal), len(recordings) == 1
     rest = untouched(data, nominal, recordings) or nominal_elsewhere(data, nominal, recordings)
     if rest and not turning:
-        # physics comes first
+        # the search for physics comes first
         found = search(data, nominal, progress, jobs, Beam(depth=1), deadline)
         if verdict_on(found.chosen) != "unexplained":
             return found, None
@@ -124,7 +124,7 @@ def examined(
             return replace(coarse, data=doubt.said(coarse.data, unsettled=False)), None
         told = deadline.attempt(partial(unnamed, coarse, jobs, deadline), unexamined(coarse))
         return replace(coarse, data=doubt.said(coarse.data, unsettled=True)), told
-    # names first, for they matter most where time runs short
+    # effects are named first, for the names matter most if time runs short
     tell = staged(progress, "what remains")
     witness = recordings[0] if single else None
     named = deadline.attempt(partial(standing, found, tell, jobs, deadline, witness), Standing(found.estimator))
@@ -144,9 +144,9 @@ def examined(
 
 
 def explains_all(named: Standing, found: Found) -> Fit | None:
-    """What stands, fitted as an explanation of all; None where it leaves something.
+    """The explanation that stands beside a remainder, fitted without one; None if it is not adequate.
 
-    A search that was stopped may not have come to it.
+    A search that was stopped may not have tried it.
     """
     if named.base is None or found.estimator.restated(named.base).ratio >= EXPLAINED:
         return None
@@ -155,12 +155,12 @@ def explains_all(named: Standing, found: Found) -> Fit | None:
 
 
 def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]:
-    """What samples that test confirm of a disturbance and of what is found beside it.
+    """How far the test samples confirm a disturbance and the explanation found beside it.
 
-    With both they have to be accounted for, or the disturbance stands for something else, and all is looked at again
-    without it. What is found has to lower the error there by a tenth: what an unlogged quantity has done is estimated
-    where the samples train, so that there little is left to miss. A wrong effect fits there as well, and so does a
-    parameter that is off by next to nothing.
+    With both, the test samples must be accounted for. Otherwise something else was mistaken for the disturbance, and
+    everything is examined again without it. The explanation has to lower the error on the test samples by a tenth. The
+    course of an unlogged quantity is estimated on the training samples, so little error is left there. A wrong effect
+    fits there as well, and so does a parameter that is off by next to nothing.
     """
     explanation = found.chosen.explanation
     if not (found.data.disturbed and explanation.size):
@@ -173,9 +173,9 @@ def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]
 
 
 def effects_stand(beside: Found, found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> bool:
-    """Whether effects that are found `beside` a wander are confirmed beside a remainder of any shape as well.
+    """Whether effects that are found `beside` a wander are also confirmed beside a remainder of any shape.
 
-    A wander takes what is slow, of whatever origin, and leaves the rest of it to effects that are not there.
+    A wander takes slow errors of any origin, and leaves the rest of them to effects that are not there.
     """
     fit = beside.chosen
     if not (beside.data.disturbed and fit.explanation.variants):
@@ -186,7 +186,7 @@ def effects_stand(beside: Found, found: Found, progress: Progress, jobs: int | N
 
 
 def evidence(recordings: Sequence[Recording], nominal: Model) -> Data:
-    """The recordings split into samples that train, validate and test; InputError where they cannot be used."""
+    """The recordings, split into training, validation and test samples; InputError if they cannot be used."""
     refuse_unusable(recordings, nominal.actuator)
     actuator = nominal.actuator
     for recording in recordings:

@@ -1,4 +1,4 @@
-"""What a diagnosis gives: the document, the corrected model, and signals for plots."""
+"""The result of a diagnosis: the document, the corrected model, and signals for plots."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pierburg_ros.plant import Model
 class View:
     """One recording as plots show it; all signals of shape (samples,).
 
-    `errors` are measured less simulated in the measured unit, by what was simulated: `nominal`, `recalibrated`,
-    `final`, and the `key` of each `Tried` that is drawn. `angle` [rad] is read by the nominal sensor, `velocity`
-    [rad/s] with it. `left_out` are spans [s] that no model was held against, with the reason.
+    `errors` are measured minus simulated in the measured unit, by the model simulated: `nominal`, `recalibrated`,
+    `final`, and the `key` of each `Tried` that is drawn. `angle` [rad] and `velocity` [rad/s] are those that the
+    nominal sensor reads. `left_out` are spans [s] that no model was compared with, each with the reason.
     """
 
     name: str
@@ -31,10 +31,11 @@ class View:
 
 @dataclass(frozen=True)
 class Tried:
-    """An explanation beside the chosen one: how many quantities it changes, and what it leaves.
+    """An explanation compared with the chosen one: how many quantities it changes, and the error that it leaves.
 
-    Errors are root mean squares in the measured unit on samples that were fitted and that were not. `lack` is what it
-    fits worse than the chosen one, in chi2 of independent samples; `key` names its error in a `View`, if drawn.
+    Errors are root mean squares in the measured unit, `training` on samples that were fitted, `unseen` on samples that
+    were not. `lack` is how much worse it fits than the chosen one, in chi2 of independent samples. `key` names its
+    error in a `View`, if drawn.
     """
 
     name: str
@@ -48,9 +49,9 @@ class Tried:
 
 @dataclass(frozen=True)
 class Characteristic:
-    """A law inside the actuator: `curves` (x, y) by model, and the recordings' say as `points` (x, y) around the final.
+    """A law inside the actuator: `curves` (x, y) by model, and `points` (x, y) of the recordings around the final.
 
-    A point is the final curve plus what the recording lacks there (a partial residual).
+    A point is the final curve plus the residual of the recording there (a partial residual).
     """
 
     id: str
@@ -63,7 +64,7 @@ class Characteristic:
 
 @dataclass(frozen=True)
 class Exhibits:
-    """What the page shows beside the document: every recording, the explanations held against each other, the laws."""
+    """What the page shows beside the document: every recording, the explanations compared, and the laws."""
 
     views: tuple[View, ...] = ()
     tried: tuple[Tried, ...] = ()
@@ -72,10 +73,10 @@ class Exhibits:
 
 @dataclass(frozen=True)
 class Result:
-    """The document, the model with the named physics, the runs, and signals of the first run.
+    """The document, the model with the named physics, the runs, and signals of one run.
 
-    `signals` by name, each (samples,): time [s], duty, measured, and what the nominal, the recalibrated and the final
-    model make of the inputs, in the measured unit.
+    `signals` are those of the longest run of the first recording by name, each (samples,): time [s], duty, measured.
+    The simulations by the nominal, the recalibrated and the final model are in the measured unit.
     """
 
     diagnosis: Diagnosis

@@ -1,8 +1,8 @@
-"""The user's own simulator in place of the description: what it does is the nominal model, and never missing physics.
+"""The user's own simulator in place of the description: what it does is nominal, and never missing physics.
 
-The description's parameters, and effects where its equations need them, are fitted to recordings that the simulator
-made. What that leaves is the difference of two simulators. It is kept apart: it counts as noise, and as much of chi2 as
-it could give is no evidence.
+The parameters of the description are fitted to recordings that the simulator made, with effects where its equations
+need them. The error that is left is the difference between the two simulators. It is kept apart: it counts as noise,
+and the chi2 that it could give is no evidence.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from pierburg_ros.plant.decode import encoded
 from pierburg_ros.recording import Recording
 
 BEAM = Beam(width=1, depth=2, ahead=8, budget=100)
-"""How far effects are looked for in a simulator's recordings. Work: a simulator has no more than a few of them, and
-what is not found counts as no evidence; not varied."""
+"""How far the search for effects in a simulator's recordings goes. Work: a simulator has no more than a few of them,
+and those that are not found count as no evidence; not varied."""
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """A simulator as our equations have it.
+    """A simulator as our equations reproduce it.
 
-    `model` is nominal for an actuator whose nominal numbers are the simulator's, `described` that of the description;
-    `left` is the root mean square of what the fit leaves of its recordings, without their own noise, and
-    `described_rmse` that of the description as it is, both in the measured unit.
+    `model` is nominal for an actuator whose nominal numbers are the simulator's; `described` is the model of the
+    description. `left` is the root mean square of the error of the fit to the simulator's recordings, without their own
+    noise. `described_rmse` is that of the description as it is, their noise included. Both are in the measured unit.
     """
 
     recordings: tuple[str, ...]
@@ -49,7 +49,7 @@ class Reproduction:
     travel: float
 
     def kept_apart(self, data: Data) -> Data:
-        """Real recordings in which the difference of the two simulators is no evidence."""
+        """Real recordings in which the difference between the two simulators is no evidence."""
         return data.kept_apart(self.left)
 
     def told(self, result: Result) -> Result:
@@ -61,7 +61,7 @@ class Reproduction:
         return replace(result, diagnosis=written, model=model)
 
     def sentence(self, unit: str) -> str:
-        """What the recordings are held against, and how well our equations reproduce it."""
+        """What the recordings are compared with, and how well our equations reproduce it."""
         count = len(self.recordings)
         own = f"{count} recordings of it" if count > 1 else "a recording of it"
         needed = f", with {_listed(self.model.active_effects)}" if self.model.active_effects else ""
@@ -96,9 +96,9 @@ def reproduction(
     progress: Progress = lambda _: None,
     jobs: int | None = None,
 ) -> Reproduction:
-    """The simulator that made the recordings `simulation`, fitted as finely as the `real` ones can tell.
+    """The simulator that made the recordings `simulation`, fitted as finely as the `real` ones can show.
 
-    InputError where they cannot be used.
+    InputError if they cannot be used.
     """
     recordings = [as_measured(recording, described) for recording in simulation]
     own = in_parts(data_of(recordings, described))
@@ -115,7 +115,7 @@ def reproduction(
 
 
 def as_measured(recording: Recording, described: Model) -> Recording:
-    """A simulator's recording in the quantity that the actuator measures: an angle as a right sensor shows it."""
+    """A simulator's recording in the quantity that the actuator measures: an angle as a correct sensor shows it."""
     wanted = described.actuator.quantity
     if recording.quantity == wanted:
         return recording
@@ -128,7 +128,7 @@ def as_measured(recording: Recording, described: Model) -> Recording:
 
 
 def lasting(found: Found) -> Fit:
-    """The chosen explanation, or where it depends on a time in one recording, the best that does not."""
+    """The chosen explanation or, if it depends on a time in one recording, the best one that does not."""
     if _lasts(found.chosen):
         return found.final
 
@@ -152,5 +152,5 @@ def with_nominal(actuator: Actuator, fit: Fit) -> Actuator:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Effects in words."""
+    """Names of effects in words."""
     return " and ".join(name.replace("_", " ") for name in names)

@@ -1,1 +1,1 @@
-"""Samples that tell nothing of the actuator, taken out of recordings before anything is fitted, and said."""
+"""Samples that say nothing about the actuator: they are removed before any fit, and reported."""

@@ -1,4 +1,4 @@
-"""Recordings without the samples that tell nothing of the actuator, and what was done to them."""
+"""Recordings without the samples that say nothing about the actuator, and a note of what was done to them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import spans_of
 
 APART = 5
-"""Samples from one that is left out to the next within which both belong to one span. Work: each span is an entry."""
+"""Largest distance [samples] between left-out samples that belong to one span. Work: each span is an entry."""
 
 
 @dataclass(frozen=True)
 class Cleaned:
-    """A recording, what was left out of it, and what to say of it first."""
+    """A cleaned recording, the spans left out of it, and the remarks that are reported first."""
 
     recording: Recording
     omissions: tuple[Omission, ...] = ()
@@ -29,7 +29,7 @@ class Cleaned:
 
 
 def cleaned(recording: Recording, number: int = 0) -> Cleaned:
-    """`recording` without outliers, without what lies at the end of the converter, and without mains hum."""
+    """`recording` without outliers, without samples at the end of the converter's range, and without mains hum."""
     found = Cleaned(recording)
     for clean in (_without_outliers, _without_saturation, _without_hum):
         found = clean(found, number)
@@ -37,7 +37,7 @@ def cleaned(recording: Recording, number: int = 0) -> Cleaned:
 
 
 def said_of(recordings: Sequence[Cleaned], data: Data) -> Data:
-    """`data` of cleaned recordings with what was done to them."""
+    """`data` of cleaned recordings with their omissions and remarks."""
     omissions = tuple(omission for each in recordings for omission in each.omissions)
     remarks = tuple(f"{each.recording.name}: {remark}" for each in recordings for remark in each.remarks)
     return replace(data, left_out=(*data.left_out, *omissions), remarks=remarks)

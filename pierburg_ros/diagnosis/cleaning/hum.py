@@ -1,4 +1,4 @@
-"""Mains hum on the sensor: a line at 50 or 60 Hz, or a multiple, that is there while the shaft stands."""
+"""Mains hum on the sensor: a line at 50 or 60 Hz, or a multiple, that is present while the shaft stands still."""
 
 from __future__ import annotations
 
@@ -12,28 +12,29 @@ from pierburg_ros.recording.noise import noise_of
 MAINS = (50.0, 60.0)
 """Frequencies [Hz] of the mains. Given: those of the world's grids."""
 OFF = 0.2
-"""How far a grid's frequency may be off [Hz]. Given: what ENTSO-E allows in normal operation."""
+"""Largest deviation of a grid's frequency [Hz]. Given: what ENTSO-E allows in normal operation."""
 MULTIPLES = (1, 2, 3)
-"""Multiples of the mains' frequency. Chosen: rectifiers and iron give these most; not varied."""
+"""Multiples of the mains frequency that are searched. Chosen: rectifiers and iron cause mostly these; not varied."""
 PERIOD = 0.1
-"""Time [s] over which the hum vanishes in the mean. Derived: five periods of 50 Hz and six of 60 Hz."""
+"""Time [s] over which the hum averages to zero. Derived: five periods of 50 Hz and six of 60 Hz."""
 STILL = 4.0
-"""Standard deviations by which means over `PERIOD` may differ while the shaft stands. Derived: noise does so with
-6e-5."""
+"""Largest difference of means over `PERIOD` while the shaft stands still, in standard deviations. Derived: noise
+exceeds it with probability 6e-5."""
 LEAST = 5.0
-"""Standstill [s] without which no line is told. Derived: hum at a third of the noise is then seen by 12 standard
-deviations at 500 Hz, and two frequencies are told apart to 0.2 Hz."""
+"""Shortest standstill [s] from which a line is reported. Derived: at 500 Hz, hum of a third of the noise is then
+detected at 12 standard deviations, and frequencies are distinguished to 0.2 Hz."""
 CERTAIN = 30.0
-"""Gain in chi-squared from which a line is there. Derived: of the 2000 lines that are tried in noise one gains as much
-with 6e-4, twice `ln(2000)` being 15."""
+"""Gain in chi-squared from which a line counts as present. Derived: if 2000 lines are tried in noise alone, one gains
+as much with probability 6e-4; twice `ln(2000)` is 15."""
 HEARD = 0.25
-"""Amplitude, in noises, from which it is taken out. Measured: of n = 29 weaker lines, 50 to 180 Hz at 200 to
-2000 Hz, none speaks for an error that lasts with more than 32, half of what tells one."""
+"""Smallest amplitude of a line that is removed, in standard deviations of the noise. Measured: n = 29 weaker lines had
+50 to 180 Hz at 200 to 2000 Hz. None gives evidence of more than 32 for a residual that is correlated in time. That is
+half of the threshold for one."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A sine of `frequency` [Hz] with cosine and sine parts, measured unit."""
+    """A sine of `frequency` [Hz]; its cosine and sine parts are in the measured unit."""
 
     frequency: float
     cosine: float
@@ -51,7 +52,7 @@ class Line:
 
 
 def hum(time: Signal, measured: Signal) -> list[Line]:
-    """The lines of the mains in a measured signal, the strongest first; none where there is too little standstill."""
+    """The mains lines in a measured signal, strongest first; none where the standstill is too short."""
     interval = float(np.median(np.diff(time)))
     still = standing(time, measured)
     if np.count_nonzero(still) * interval < LEAST:
@@ -68,7 +69,7 @@ def hum(time: Signal, measured: Signal) -> list[Line]:
 
 
 def standing(time: Signal, measured: Signal) -> Flags:
-    """Which samples lie where means over `PERIOD` stay what they are, shape (samples,)."""
+    """Which samples lie where the mean over `PERIOD` stays the same, shape (samples,)."""
     count = max(round(PERIOD / float(np.median(np.diff(time)))), 1)
     total = np.concatenate([[0.0], np.cumsum(measured)])
     mean = (total[count:] - total[:-count]) / count
@@ -83,7 +84,7 @@ def standing(time: Signal, measured: Signal) -> Flags:
 
 
 def _strongest(time: Signal, measured: Signal, still: Flags, about: float) -> tuple[Line, float]:
-    """The line around a frequency that the standing samples show most, and what it gains in chi-squared."""
+    """The line near a frequency that fits the standstill samples best, and its gain in chi-squared."""
     count = max(round(PERIOD / float(np.median(np.diff(time)))), 1)
     level = np.convolve(np.pad(measured, count // 2, mode="edge"), np.ones(count) / count, mode="same")
     rest = (measured - level[count // 2 : count // 2 + measured.size])[still]

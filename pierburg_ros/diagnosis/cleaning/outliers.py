@@ -11,27 +11,30 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.recording.noise import noise_of
 
 WINDOW = 7
-"""Samples whose median one is held against. Derived: outliers in a row are found up to three, half of what remains;
-with one in a hundred four of seven are outliers in 3e-7 of the windows."""
+"""Length of the window [samples] of the median with which a sample is compared. Derived: up to three outliers in a row
+are found, half of the other samples. If one sample in a hundred is an outlier, four of seven are in 3e-7 of the
+windows."""
 WIDER = 15
-"""Samples around one that say how far others are off their lines. Derived: one outlier touches five of them."""
+"""Length of the window [samples] that gives the usual distance of samples from the lines through their neighbours.
+Derived: one outlier affects five of them."""
 NOISES = 6.0
-"""Noises from which a sample is an outlier. Derived: white noise gets there with 2e-9."""
+"""Distance from which a sample is an outlier, in standard deviations of the noise. Derived: white noise reaches it with
+probability 2e-9."""
 SPREADS = 8.0
-"""Usual distances that it is off besides, so that no motion counts. Derived: a corner of the fastest straight motion,
-up and down again, is off its median by 2 of them, a jump that stays by 0, and a parabola by 3; what rests on a step of
-the converter counts as spread by half of it."""
+"""Further distance that an outlier must have, in usual distances, so that no motion counts as one. Derived: a corner of
+the fastest straight motion, up and down again, is 2 of them off its median, a jump that stays 0, and a parabola 3. For
+a signal that rests on one step of the converter, half a step counts as the usual distance."""
 TURNING = 3.0
-"""Steps of the motion itself that it is off besides. Derived: where a motion turns round at once it is off by one, and
-by two where it turns between two samples and comes back faster."""
+"""Further distance that an outlier must have, in steps of the motion from sample to sample. Derived: at an abrupt
+reversal a sample is off by one. It is off by two if the motion reverses between two samples and returns faster."""
 MOST = 0.1
-"""Share of samples up to which outliers are outliers. Chosen: beyond it the signal itself jumps to and fro."""
+"""Largest share of samples that may be outliers. Chosen: beyond it the signal itself jumps to and fro."""
 
 
 def outliers(time: Signal, measured: Signal) -> Flags:
-    """Which samples lie far off those around them, shape (samples,); none where too many do.
+    """Which samples lie far from their neighbours, shape (samples,); none where too many do.
 
-    What lies near an outlier is looked at again without it.
+    After outliers are removed, the samples near them are tested again.
     """
     found = np.zeros(measured.size, dtype=bool)
     noise = noise_of(time, measured)
@@ -48,7 +51,7 @@ def outliers(time: Signal, measured: Signal) -> Flags:
 
 
 def _off_median(values: Signal, noise: float, least: float) -> Flags:
-    """Which are far off the median of those around them, by what is usual there."""
+    """Which samples lie far from the median of their neighbours, compared with the usual distance there."""
     around = sliding_window_view(np.pad(values, WINDOW // 2, mode="edge"), WINDOW)
     median = np.median(around, axis=1)
     spread = np.median(np.abs(around - median[:, np.newaxis]), axis=1)
@@ -56,10 +59,10 @@ def _off_median(values: Signal, noise: float, least: float) -> Flags:
 
 
 def _off_lines(values: Signal, noise: float, least: float) -> Flags:
-    """Which are far off the lines through the two before and the two after them, to the same side.
+    """Which samples lie far, on the same side, from both lines through the two samples before and the two after.
 
-    A corner lies on one of them, but where a motion turns round at once it is off by its own step from sample to
-    sample. The noise of three samples adds up to sqrt(1 + 4 + 1) times that of one.
+    A corner lies on one of the lines. At an abrupt reversal a sample is off by its own step from sample to sample. The
+    noise of three samples adds up to sqrt(1 + 4 + 1) times that of one.
     """
     padded = np.pad(values, 2, mode="edge")
     steps = np.diff(padded)

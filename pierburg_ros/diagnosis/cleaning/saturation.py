@@ -1,4 +1,4 @@
-"""A converter that ends below what the sensor gives: the reading stands at its highest or lowest value."""
+"""A converter whose range is smaller than the sensor's: the reading stays at its highest or lowest value."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.recording.noise import noise_of
 
 RESOLVED = 0.5
-"""Noise, in steps of the converter, from which readings of a shaft at rest differ. Derived: with half a step of noise
-two successive readings are equal with about 0.5."""
+"""Smallest noise with which readings of a shaft at rest differ, in steps of the converter. Derived: with half a step of
+noise two successive readings are equal with probability of about 0.5."""
 CHANCE = 1e-6
-"""How likely a run of equal readings may be by chance in a whole recording for it to be the converter's end. Chosen:
-one recording in a million; not varied."""
+"""Probability below which a run of equal readings is not chance, over a whole recording, but the converter's end.
+Chosen: one recording in a million; not varied."""
 BESIDE = 4.0
-"""Noises below the end within which readings are left out too: of those only the lower ones are seen. Derived: white
-noise goes further with 3e-5."""
+"""Distance from the end within which readings are left out too, in standard deviations of the noise: there one side of
+the noise is cut off. Derived: white noise goes further with probability 3e-5."""
 
 
 def saturated(time: Signal, measured: Signal) -> Flags:
-    """Which samples stand at the end of the converter, or so near that noise decides, shape (samples,).
+    """Which samples stand at the end of the converter's range, or so near that noise decides, shape (samples,).
 
-    The end is the highest or lowest value, repeated in a row far longer than noise repeats any other.
+    The end is the highest or lowest value, if it repeats in a row far longer than noise repeats any other.
     """
     values, noise = np.unique(measured), noise_of(time, measured)
     found = np.zeros(measured.size, dtype=bool)
@@ -37,7 +37,7 @@ def saturated(time: Signal, measured: Signal) -> Flags:
 
 
 def _by_chance(same: Flags, size: int) -> float:
-    """Length of a run of equal readings that is not chance, from how often two successive ones are the `same`."""
+    """Length from which a run of equal readings is not chance, from how often two successive ones are the `same`."""
     share = min(max((np.count_nonzero(same) + 1.0) / (same.size + 2.0), 1e-6), 1.0 - 1e-6)
     return 1.0 + math.log(CHANCE / size) / math.log(share)
 

@@ -1,1 +1,2 @@
-"""What may have acted on a recording and is no physics of the actuator: tried where no explanation accounts for all."""
+"""Disturbances of a recording that are not physics of the actuator, tested where every explanation leaves a
+remainder."""

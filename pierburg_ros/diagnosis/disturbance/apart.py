@@ -1,4 +1,4 @@
-"""Where no explanation accounts for all: whether one does once a disturbance of the recording is set apart."""
+"""Whether an explanation accounts for the whole residual once a disturbance of the recording is taken into account."""
 
 from __future__ import annotations
 
@@ -30,22 +30,25 @@ from pierburg_ros.recording.loss import Span
 from pierburg_ros.workers import workers
 
 BESIDE = 4
-"""Explanations beside which disturbances are tried, the nominal model being one. Work: each costs some hundred
-simulations; the right one of plain effects was among the first two."""
+"""Number of explanations with which disturbances are tested; the nominal model is one. Work: each costs some hundred
+simulations. For plain effects the right explanation was among the first two."""
 CONFIRMED = 1.5
-"""Error over noise that a wander may leave on samples that validate. Chosen: the true one left 1.01, 1.01 and, where a
-slip comes at another moment, 1.23; others, and those beside which physics was missing, 3.9 or more (about eleven)."""
+"""Largest error over noise on validation samples beside a wandering quantity. Chosen: the true quantity left 1.01, 1.01
+and, where a slip comes at another moment, 1.23. Other quantities, and those beside which physics was missing, left 3.9
+or more (about eleven)."""
 Attempt = tuple[Data, Beam | None]
-"""A recording with something set apart, and how far to search in it; None as far as always."""
+"""A recording with a disturbance taken into account, and how far to search in it; None is the usual depth."""
 NOTHING = "nothing that acts elsewhere explains this stretch"
-"""Why a stretch is left out."""
+"""The reason for leaving out a stretch."""
 
 
 def apart(found: Found, recording: Recording, progress: Progress, jobs: int | None, deadline: Deadline) -> Found:
-    """What is found once a disturbance is set apart that leaves nothing else; `found` itself where none does.
+    """The result of a search with a disturbance taken into account, if that leaves only noise; otherwise `found`
+    itself.
 
-    Physics comes first: it is asked only after a search that left something. `recording` is the one it was made on.
-    Simulated in stretches that each begin anew, an actuator forgets a disturbance by itself, and none is told.
+    Physics comes first: disturbances are tested only after a search that left a remainder. `recording` is the one that
+    was searched. An actuator that is simulated in stretches forgets a disturbance at each new start: none is reported
+    for it.
     """
     if found.data.in_stretches:
         return found
@@ -60,9 +63,10 @@ def apart(found: Found, recording: Recording, progress: Progress, jobs: int | No
 
 
 def _promising(found: Found, pool: Executor) -> list[Fit]:
-    """The nominal model, the best pair, and the best single quantities, all fitted so that large errors count no more.
+    """The nominal model, the best pair and the best single quantities; in their fits large errors count by their
+    logarithm.
 
-    Otherwise what disturbs a recording bends the very fit that tells all the rest.
+    Otherwise a disturbance would distort the fit on which all else depends.
     """
     estimator = found.estimator
 
@@ -77,14 +81,14 @@ def _promising(found: Found, pool: Executor) -> list[Fit]:
 
 
 def _robust(estimator: Estimator, fit: Fit) -> Fit:
-    """The explanation of `fit` fitted so that large errors count no more."""
+    """The explanation of `fit`, fitted again with large errors counting by their logarithm."""
     return estimator.restated(estimator.fit(fit.explanation, fit.values, BRIEF, forgiving=True))
 
 
 def _by_another_clock(
     found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
 ) -> Iterator[Attempt]:
-    """The recording with its input moved to when it acted, if that is all that an explanation lacks."""
+    """The recording with its input moved to when it acted, if an explanation lacks nothing else."""
     estimator = found.estimator
     progress(f"what has been tried, with the {recording.input} by another clock")
     told = pool.map(lambda fit: with_other_clock(found.data, estimator, fit, recording), fits)
@@ -96,7 +100,7 @@ def with_other_clock(
 ) -> Data | None:
     """The recording with its input moved to when it acted; None where an explanation lacks more, or it is a delay.
 
-    `alone`: that is all that is wrong with `fit` as it is.
+    `alone`: the clock must be the only error of `fit` as it is.
     """
     clock = other_clock(data, fit.model, alone)
     if clock is None:
@@ -108,10 +112,10 @@ def with_other_clock(
 def _without_stretches(
     found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
 ) -> Iterator[Attempt]:
-    """The recording without the one stretch that an explanation fails in, if it leaves nothing elsewhere.
+    """The recording without the one stretch in which an explanation fails, if that leaves only noise elsewhere.
 
-    First where nothing has to be left out, for the bridge was open. Where none does, the first of them once more, for
-    what a single quantity explains that the stretch has hidden.
+    A recording from which nothing has to be left out, because the bridge was open, comes first. Last comes the first
+    recording in which more is left: the search may find a single quantity there that the stretch has hidden.
     """
     estimator, others = Estimator(found.data, found.nominal), list[Data]()
     progress("what has been tried, but for one stretch")
@@ -128,7 +132,8 @@ def _without_stretches(
 def _beside_slow_quantities(
     found: Found, fits: Sequence[Fit], recording: Recording, pool: Executor, progress: Progress
 ) -> Iterator[Attempt]:
-    """The recording as if a quantity that wandered had been measured, beside which an explanation leaves nothing."""
+    """The recording as if a wandering quantity had been measured, if an explanation with that quantity leaves only
+    noise."""
     data, nominal = found.data, found.nominal
     estimator, ways = Estimator(data, nominal), slow_quantities(recording, data, nominal)
     for fit in fits:
@@ -143,7 +148,7 @@ def _beside_slow_quantities(
 
 
 def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Slow]:
-    """What may have wandered in a recording without being measured."""
+    """The quantities that may have wandered in a recording without being measured."""
     actuator = nominal.actuator
     found: list[Slow] = [Zero(actuator.unit, ZERO * data.scales.reading)]
     if actuator.drive == "voltage" and recording.supply_voltage is None:
@@ -152,10 +157,10 @@ def slow_quantities(recording: Recording, data: Data, nominal: Model) -> list[Sl
 
 
 def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Data | None:
-    """A single recording without what disturbs it, if the nominal model leaves nothing then.
+    """A single recording without its disturbance, if the nominal model then leaves only noise; otherwise None.
 
-    Without the one stretch that it fails in, or with the bridge open there, or with the input moved to when it acted.
-    None where it leaves something, and where an actuator is simulated in stretches.
+    Either the one stretch in which the model fails is left out, or the bridge is open there, or the input is moved to
+    when it acted. None also for an actuator that is simulated in stretches.
     """
     if len(recordings) > 1 or data.in_stretches:
         return None
@@ -168,10 +173,10 @@ def nominal_elsewhere(data: Data, nominal: Model, recordings: Sequence[Recording
 
 
 def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recording) -> tuple[Data, Fit] | None:
-    """The recording without the one stretch that holds nearly all errors of an explanation, None where they are spread.
+    """The recording without the one stretch that holds nearly all errors of an explanation; None where they are spread.
 
-    Or with the bridge open meanwhile, where that leaves nothing. With it the explanation fitted again; that of `fit`
-    counts large errors no more.
+    Where an open bridge in that stretch leaves only noise, the bridge is open instead. The second item is the
+    explanation fitted again: in `fit`, large errors count by their logarithm.
     """
     span = confined(data, data.residual(fit.model))
     if span is None:
@@ -188,10 +193,10 @@ def without_stretch(data: Data, estimator: Estimator, fit: Fit, recording: Recor
 def with_open_bridge(
     data: Data, estimator: Estimator, fit: Fit, recording: Recording, span: Span
 ) -> tuple[Data, Fit, Recording] | None:
-    """The recording with the bridge open for a while, where that is all that an explanation lacks in a `span` [s].
+    """The recording with the bridge open for a while, if an explanation lacks nothing else in a `span` [s].
 
-    As evidence, with it the explanation fitted again, and as if the bridge had been logged. None where the explanation
-    lacks more, or where the state of the bridge was logged.
+    It returns the data, the explanation fitted again, and the recording as if the state of the bridge had been logged.
+    None where the explanation lacks more, or where that state was logged.
     """
     bridge = opened(data, fit.model, span)
     if bridge is None:
@@ -202,17 +207,18 @@ def with_open_bridge(
 
 
 def _known(data: Data, estimator: Estimator, fit: Fit, known: Recording, remark: str) -> tuple[Data, Fit] | None:
-    """A recording with what has disturbed it `known`, and an explanation fitted again; None where that leaves more."""
+    """The data of a recording with a `known` disturbance, and an explanation fitted again; None if more than noise is
+    left."""
     rest = in_parts(data_of([known], estimator.nominal))
     left = Estimator(rest, estimator.nominal).fit(fit.explanation, fit.values, BRIEF)
     return (_said(rest, data, f"{known.name}: {remark}", disturbed=False), left) if adequate(left) else None
 
 
 def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> tuple[Data, Recording] | None:
-    """A single recording with the bridge open, where that does what a load does that came and went.
+    """A single recording with the bridge open, where that does the same as a load that came and went.
 
-    As evidence, and as if that had been logged. It has two quantities, and the load three. None where no such load was
-    found or more is left.
+    It returns the data, and the recording as if the state of the bridge had been logged. An open bridge has two free
+    numbers, the load three. None where no such load was found, or more than noise is left.
     """
     load = next(filter(_passing, found.chosen.explanation.variants), None)
     if load is None or len(recordings) > 1 or found.data.in_stretches:
@@ -224,12 +230,12 @@ def bridge_for_load(found: Found, recordings: Sequence[Recording]) -> tuple[Data
 
 
 def _passing(variant: Variant) -> bool:
-    """Whether an effect begins and ends, each at a moment that is searched."""
+    """Whether an effect begins and ends, both at moments that are fitted."""
     return len(moments(variant)) == 2
 
 
 def _said(rest: Data, before: Data, remark: str, disturbed: bool) -> Data:
-    """`rest` with what was said of the data `before`, and the remark."""
+    """`rest` with the omissions and remarks of the data `before`, and one more remark."""
     kept = tuple(each for each in before.left_out if each not in rest.left_out)
     remarks = (*before.remarks, remark)
     return replace(rest, left_out=(*rest.left_out, *kept), remarks=remarks, disturbed=disturbed, unlike=before.unlike)

@@ -1,4 +1,4 @@
-"""A bridge that was open for a while: the motor neither drives nor brakes the shaft, while the command goes on."""
+"""A bridge that was open for a while: the motor neither drives nor brakes the shaft, while the command continues."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.recording.loss import Span
 
 FINE = 0.25
-"""Distance of the moments that are tried first, in blocks. Work: 60 ms for the valve, some 300 simulations of a minute;
-the six bridges that were open were found from there."""
+"""Spacing of the moments that are tried first, in blocks. Work: 60 ms for the valve, some 300 simulations of a
+one-minute recording; the six open bridges were found from there."""
 SOON = 4.0
-"""Blocks of a stretch by which the moment is told from which on the bridge was open. Chosen: a second for the valve,
-ten times what its spring takes to move it; not varied."""
+"""Number of blocks of a stretch that determine when the bridge opened. Chosen: a second for the valve, ten times as
+long as its spring takes to move it; not varied."""
 LEFT = 0.2
-"""Share of the cost within the stretch that the best moments may leave. Chosen: in between, as ratios go. The true ones
-left 0.009 to 0.073 (n = 6 bridges that were open), the best for a hand on the lever (n = 8), a load that came and went,
-a slip or a change (n = 11) 0.54 and more."""
+"""Largest share of the cost within the stretch that the best moments may leave. Chosen: midway between two groups, as
+ratios go. The true moments left 0.009 to 0.073 (n = 6 open bridges). The best moments left 0.54 and more in other
+cases: a hand on the lever (n = 8), and a load that came and went, a slip or a change (n = 11)."""
 
 
 @dataclass(frozen=True)
@@ -35,19 +35,19 @@ class OpenBridge:
     end: float
 
     def applied(self, run: Run) -> Run:
-        """`run` with the bridge open meanwhile."""
+        """`run` with the bridge open during that time."""
         time = np.unique(np.concatenate([run.inputs.time, [self.start, self.end]]))
         enabled = (time < self.start) | (time >= self.end)
         return replace(run, inputs=replace(run.inputs.at(time), enabled=enabled))
 
     def known(self, recording: Recording) -> Recording:
-        """`recording` as if that had been logged."""
+        """`recording` as if the state of the bridge had been logged."""
         time = np.array([min(float(recording.time[0]), self.start) - 1.0, self.start, self.end])
         return replace(recording, enabled=Channel(time, np.array([1.0, 0.0, 1.0])))
 
     @property
     def remark(self) -> str:
-        """What is to be said of it."""
+        """The remark for the report."""
         return (
             f"from {self.start:.4g} to {self.end:.4g} s the bridge seems to have been open: the shaft moves as without"
             " a current. That stretch is simulated so. Log the state of the bridge as enabled."
@@ -55,11 +55,12 @@ class OpenBridge:
 
 
 def opened(data: Data, model: Model, span: Span) -> OpenBridge | None:
-    """From when to when the bridge was open, if that is why `model` fails in a `span` [s] of a recording.
+    """The time during which the bridge was open, if that is why `model` fails in a `span` [s] of a recording.
 
-    None if not, or where its state was logged. For at least a block: less is a nudge, which stands for any slip that
-    came at another moment. First the moment at which it opens is sought, by the errors soon after; then the one at
-    which it closes, by all errors of the stretch; then both are made exact. Large errors count no more.
+    None if it is not, or where the state of the bridge was logged. The bridge is open for at least a block: a shorter
+    time is a nudge, which can explain any slip that came at another moment. The search first finds when the bridge
+    opens, from the errors soon after. It then finds when the bridge closes, from all errors of the stretch. Last it
+    refines both. Large errors count by their logarithm.
     """
     if any(run.inputs.enabled is not None for run in data.runs):
         return None
@@ -77,7 +78,7 @@ def opened(data: Data, model: Model, span: Span) -> OpenBridge | None:
         start, end = map(float, moments)
         return cost(start, end) if first <= start <= end - block else np.inf
 
-    # a shaft that rests shows the open bridge late
+    # a shaft at rest shows the open bridge late
     about = span[0] + SOON * block
     starts = [*np.arange(span[0] - block, lowest, -block), *np.arange(span[0] - block, about, step)]
     start = min(starts, key=lambda start: cost(start, last, about))

@@ -1,4 +1,4 @@
-"""An input that is stamped by another clock: it comes after the motion that it causes, or runs away from it."""
+"""An input that is stamped by another clock: it is stamped after the motion that it causes, or drifts away from it."""
 
 from __future__ import annotations
 
@@ -16,25 +16,28 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
 FARTHEST = 2.0
-"""Latest and earliest that an input is looked for at the beginning of a recording, in the actuator's own time. Chosen:
-0.19 s for the valve; farther ones are found by the audit."""
+"""Largest offset of an input, late or early, that is searched at the beginning of a recording, in the actuator's own
+time. Chosen: 0.19 s for the valve; the audit finds larger ones."""
 GRID = 0.2
-"""Distance of the times that are tried first, in the actuator's own time. Work: 21 simulations of the first part; all
+"""Spacing of the offsets that are tried first, in the actuator's own time. Work: 21 simulations of the first part; all
 five clocks that were off were found from there."""
 HALVINGS = 4
-"""How often a recording is halved for its first part. Derived: a clock that is 0.3 % off moves by 11 ms in a sixteenth
-of a minute, which the steps on the grid bridge; what a part tells is twice as far at the end of the next one."""
+"""How often a recording is halved to give its first part. Derived: a clock that is 0.3 % off moves by 11 ms in a
+sixteenth of a minute, which the steps of the grid cover. The offset found in a part has doubled at the end of the next
+one."""
 ALONE = 2.0
-"""Squared error [noise^2] of a sample, on average over any part, up to which a clock may be all that is wrong. Chosen:
-the right times leave 1.0, and missing physics leaves more from the first part that moves on; not varied."""
+"""Largest mean squared error of a sample [noise^2], over any part, with which the clock may be the only error. Chosen:
+the right times leave 1.0; missing physics leaves more, from the first part onwards in which the shaft moves; not
+varied."""
 LEFT = 0.5
-"""Share of the cost that the best times may leave. Chosen: the true ones left 0.05 to 0.16 beside the right physics
-(n = 5); what is wrong elsewhere 0.93 and more (n = 4)."""
+"""Largest share of the cost that the best offsets may leave. Chosen: the true ones left 0.05 to 0.16 beside the right
+physics (n = 5); other errors left 0.93 and more (n = 4)."""
 
 
 @dataclass(frozen=True)
 class OtherClock:
-    """The input of a recording from `first` to `last` [s] is stamped late: by `at_first` [s], `at_last` in the end."""
+    """The input of a recording from `first` to `last` [s] is stamped late: by `at_first` [s], by `at_last` at the
+    end."""
 
     first: float
     last: float
@@ -42,16 +45,16 @@ class OtherClock:
     at_last: float
 
     def true(self, time: Signal) -> Signal:
-        """When an input acted that is stamped `time` [s], shape (changes,)."""
+        """The times [s] at which inputs acted that are stamped `time` [s], shape (changes,)."""
         share = (time - self.first) / (self.last - self.first)
         return np.asarray(time - self.at_first - share * (self.at_last - self.at_first))
 
     def applied(self, run: Run) -> Run:
-        """`run` with its inputs when they acted."""
+        """`run` with its inputs at the times when they acted."""
         return replace(run, inputs=replace(run.inputs, time=self.true(run.inputs.time)))
 
     def known(self, recording: Recording) -> Recording:
-        """`recording` as if its input, and what was logged of the drive beside it, had been stamped when it acted."""
+        """`recording` as if its input, and the other logged channels of the drive, had been stamped when they acted."""
         return replace(
             recording,
             command=self._moved(recording.command),
@@ -63,12 +66,13 @@ class OtherClock:
         return Channel(self.true(channel.time), channel.values)
 
     def wrong(self, interval: float) -> bool:
-        """Whether no delay does that: motion comes before its cause, or runs apart from it, by some `interval` [s]."""
+        """Whether no delay does that: motion precedes its cause, or drifts away from it, by several times the
+        `interval` [s]."""
         late = max(self.at_first, self.at_last) > EARLY * interval
         return late or abs(self.at_last - self.at_first) > DRIFTS * interval
 
     def remark(self, driven: str) -> str:
-        """What is to be said of it."""
+        """The remark for the report."""
         return (
             f"the {driven} seems to be stamped by another clock, {1e3 * self.at_first:.3g} ms late at the beginning and"
             f" {1e3 * self.at_last:.3g} ms at the end; it is moved to where it acted. Stamp all signals by one clock:"
@@ -77,12 +81,13 @@ class OtherClock:
 
 
 def other_clock(data: Data, model: Model, alone: bool = False) -> OtherClock | None:
-    """By how much the input is stamped late, if that is why `model` fails; None if not, or where it is a delay.
+    """By how much the input is stamped late, if that is why `model` fails; None if it is not, or where it is a delay.
 
-    `alone`: None as soon as a part shows that something else is wrong as well.
+    `alone`: return None as soon as a part shows another error as well.
 
-    The best two times, at the beginning and at the end of the first part of a recording, then of the first two, four,
-    and so on: a clock that runs away is far off in the end, and hardly in the beginning. Large errors count no more.
+    The search finds the best two offsets, at the beginning and at the end of the first part of a recording. It then
+    does so for the first two parts, four, and so on: a clock that drifts is far off at the end, and hardly at the
+    beginning. Large errors count by their logarithm.
     """
     own, time = data.scales.time, np.concatenate([run.time for run in data.runs])
     first, duration = float(time[0]), float(time[-1] - time[0])
@@ -102,14 +107,14 @@ def other_clock(data: Data, model: Model, alone: bool = False) -> OtherClock | N
 
 
 def _until(data: Data, moment: float) -> Data:
-    """What lies before a `moment` [s]."""
+    """The data before a `moment` [s]."""
     begun = (run for run in data.runs if run.time[0] < moment)
     return replace(data, runs=tuple(run.cut(moment - run.time[0]) for run in begun))
 
 
 def _cost(data: Data, model: Model, first: float, last: float, late: Signal) -> float:
-    """The error with the input stamped `late` by so much [s] at `first` and at `last`, shape (2,)."""
-    # no clock stands still
+    """The squared error with the input stamped `late` by so much [s] at `first` and at `last`, shape (2,)."""
+    # a clock neither stands still nor runs backwards
     if late[1] - late[0] >= last - first:
         return np.inf
     return float(np.sum(squared_error(data, model, OtherClock(first, last, *late).applied)))

@@ -1,4 +1,5 @@
-"""How a quantity wanders slowly: a cubic spline through knots, smooth unless the recording says otherwise."""
+"""The course of a quantity that wanders slowly: a cubic spline through knots, smooth unless the recording
+contradicts."""
 
 from __future__ import annotations
 
@@ -11,16 +12,16 @@ from scipy.interpolate import CubicSpline
 from pierburg_ros.arrays import Signal
 
 SPACING = 21.0
-"""Time between knots, in the actuator's own time. Derived: 2 s for the valve; a sine of a period of 12 s is then met to
-0.4 % of its amplitude, and the blocks that validate, 1.5 s, are seen from either side."""
+"""Time between knots, in the actuator's own time. Derived: 2 s for the valve. A sine with a period of 12 s is then
+fitted to 0.4 % of its amplitude, and a validation block, 1.5 s, is constrained from both sides."""
 BEND = 0.03
-"""Change of the slope from knot to knot that costs as much as one noise, in sizes that are usual. Chosen: so slow a
-wander is not held back by it where thousands of samples speak for it; not varied."""
+"""Change of slope from knot to knot that costs as much as one standard deviation of the noise, in usual sizes. Chosen:
+it does not hold back so slow a wander where thousands of samples support it; not varied."""
 
 
 @dataclass(frozen=True)
 class Course:
-    """Knots over the time of a recording [s], shape (knots,); the values there are what a fit moves."""
+    """Knots over the time of a recording [s], shape (knots,); a fit moves the values at them."""
 
     knots: Signal
 
@@ -31,10 +32,10 @@ class Course:
         return Course(np.linspace(start, end, count))
 
     def basis(self, time: Signal) -> Signal:
-        """What each knot adds at `time` [s], shape (times, knots); constant beyond the ends."""
+        """The contribution of each knot at `time` [s], shape (times, knots); constant beyond the ends."""
         spline = CubicSpline(self.knots, np.eye(self.knots.size), bc_type="natural")
         return np.asarray(spline(np.clip(time, self.knots[0], self.knots[-1])))
 
     def cost(self, values: Signal, usual: float) -> Signal:
-        """What `values` at the knots cost as residuals [noise], by their size and their bends."""
+        """The cost of `values` at the knots as residuals [noise]: by their size and by their change of slope."""
         return np.concatenate([values / usual, np.diff(values, 2) / (BEND * usual)])

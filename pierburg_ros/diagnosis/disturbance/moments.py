@@ -1,4 +1,4 @@
-"""Two moments of a recording, made exact: those between which a bridge was open, or by which an input comes late."""
+"""Refinement of two times in a recording: when a bridge opened and closed, or by how much an input comes late."""
 
 from __future__ import annotations
 
@@ -14,20 +14,22 @@ from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 
 EXACT = 1e-3
-"""How exactly the two are told, in the actuator's own time. Derived: 0.1 ms for the valve, whose shaft moves by a
+"""Tolerance of the two times, in the actuator's own time. Derived: 0.1 ms for the valve, whose shaft moves by a
 thousandth of its travel in that time, less than usual noise."""
 TRIALS = 200
-"""Simulations in which they are made exact. Work: six open bridges took 43 to 128, five clocks 34 to 37; not varied."""
+"""Largest number of simulations in which they are refined. Work: six open bridges took 43 to 128, five clocks 34 to 37;
+not varied."""
 
 
 def squared_error(data: Data, model: Model, applied: Callable[[Run], Run]) -> Signal:
-    """Squared error [noise] of each sample with something `applied` to the runs; large ones count no more."""
+    """Squared error [noise^2] of each sample with a disturbance `applied`, shape (samples,); large ones by their
+    logarithm."""
     disturbed = data.changed(applied)
     return np.asarray(np.square(forgiven(disturbed.residual(model))))
 
 
 def exact(cost: Callable[[Signal], float], about: Signal, step: float, own_time: float) -> tuple[Signal, float]:
-    """The two moments [s] of lowest `cost` near those `about`, from a `step` [s] on, and that cost."""
+    """The two times [s] of lowest `cost` near those `about`, searched with a first `step` [s], and that cost."""
     around = about + step * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     options = {"initial_simplex": around, "xatol": EXACT * own_time, "fatol": 1.0, "maxfev": TRIALS}
     found = minimize(cost, about, method="Nelder-Mead", options=options)

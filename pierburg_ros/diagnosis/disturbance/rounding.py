@@ -1,4 +1,4 @@
-"""An input that is logged in coarse steps: what lies between them moved the shaft and is not known."""
+"""An input that is logged in coarse steps: values between them moved the shaft and are not known."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from pierburg_ros.plant import Inputs
 from pierburg_ros.recording import Recording
 
 AS_MUCH = 3.0
-"""What is left may be so many times what rounding does to the nominal model for that to be its cause. Chosen: roundings
-that are drawn do more or less, and those of long holds count most; not varied."""
+"""Largest remainder that rounding may have caused, in multiples of what rounding does to the nominal model. Chosen:
+roundings drawn at random do more or less, and those of long holds count most; not varied."""
 
 
 @dataclass(frozen=True)
 class Rounding:
-    """What the steps in which the input of a recording was logged do to the signal: `size` in the measured unit."""
+    """The effect on the signal of the steps in which a recording's input was logged: `size` in the measured unit."""
 
     recording: Recording
     step: float
     size: float
 
     def kept_apart(self, data: Data) -> Data:
-        """`data` in which that counts as noise, and as much of the evidence as it could give is none."""
+        """`data` in which this effect counts as noise, and a residual of its size is no evidence."""
         return data.kept_apart(self.size)
 
     def said(self, data: Data, unsettled: bool) -> Data:
-        """`data` with a remark on it; `unsettled` where an explanation that stands out was not found beside it."""
+        """`data` with a remark on it; `unsettled` where no explanation was found that stands out beside it."""
         name, driven = self.recording.name, self.recording.input
         moved = f"{self.size:.2g} {data.actuator.unit}"
         then = ", as much as is left: no effect can be concluded" if unsettled else ", which counts as noise"
@@ -42,7 +42,7 @@ class Rounding:
 
 
 def rounded(found: Found, recording: Recording) -> Rounding | None:
-    """The steps in which the input was logged, where all that is left may come from them; None where not."""
+    """The steps in which the input was logged, if the whole remainder may come from them; otherwise None."""
     step = grid(recording.command.values)
     if step == 0.0:
         return None
@@ -57,7 +57,7 @@ def rounded(found: Found, recording: Recording) -> Rounding | None:
 
 
 def between_steps(inputs: Inputs, recording: Recording, step: float) -> Inputs:
-    """`inputs` of a recording with what may have been applied: off by up to half a step, while a logged value holds."""
+    """`inputs` of a recording as they may have been applied: off by up to half a step while a logged value holds."""
     values = recording.command.values
     held = np.cumsum(np.diff(values, prepend=values[0]) != 0.0)
     off = np.random.default_rng(0).uniform(-0.5, 0.5, held[-1] + 1)[held] * step

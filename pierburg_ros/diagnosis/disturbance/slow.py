@@ -15,36 +15,36 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
 FINE = 0.1
-"""Times between which a supply voltage counts as constant, in the actuator's own time. Derived: 10 ms for
-the valve; at a volt in 3 s it is then known to 2 mV, which moves it by half a millivolt."""
+"""Time for which a supply voltage counts as constant, in the actuator's own time. Derived: 10 ms for the valve. A
+supply that changes by a volt in 3 s is then known to 2 mV, which moves the valve by half a millivolt."""
 SUPPLY = 0.1
-"""Usual size of a wander of the supply, as a share of it. Given: a board net of 12 V has 12 to 14.5 V."""
+"""Usual size of a wander of the supply, as a share of it. Given: a 12 V vehicle supply has 12 to 14.5 V."""
 ZERO = 0.02
-"""Usual size of a wander of the sensor's zero, as a share of the travel. Chosen: 2 % is a bad sensor."""
+"""Usual size of a wander of the sensor's zero, as a share of the travel. Chosen: a sensor with 2 % is a bad one."""
 
 Simulated = Callable[[Model, Signal], Signal]
 
 
 class Slow(Protocol):
-    """A kind of quantity that wanders."""
+    """A quantity that wanders slowly."""
 
     @property
     def usual(self) -> float:
         """Usual size of its wander, in the unit of the values at the knots."""
 
     def simulated(self, run: Run, course: Course) -> Simulated:
-        """What a model measures in `run` while the quantity has these values at the knots, shape (samples,)."""
+        """A function of a model and the values at the knots: the simulated signal in `run`, shape (samples,)."""
 
     def known(self, recording: Recording, course: Course, values: Signal) -> Recording:
         """`recording` as if the quantity had been measured."""
 
     def remark(self, course: Course, values: Signal) -> str:
-        """What is to be said of it."""
+        """The remark for the report."""
 
 
 @dataclass(frozen=True)
 class Supply:
-    """The supply voltage, nominally a `voltage` [V], whose logarithm wanders."""
+    """The supply voltage, nominally `voltage` [V]; its logarithm wanders."""
 
     voltage: float
     own_time: float
@@ -68,7 +68,8 @@ class Supply:
         return replace(recording, supply_voltage=Channel(time, supply))
 
     def _moments(self, samples: Signal, changes: Signal) -> Signal:
-        """When it may have another value: wherever the input changes, and so often that it hardly moves between [s]."""
+        """The times [s] at which its value is set: where the input changes, and so often that it hardly moves in
+        between."""
         fine = np.arange(samples[0], samples[-1], FINE * self.own_time)
         return np.unique(np.concatenate([changes, fine]))
 
@@ -84,7 +85,7 @@ class Supply:
 
 @dataclass(frozen=True)
 class Zero:
-    """The zero of the sensor, in a measured `unit`."""
+    """The zero of the sensor, in the measured `unit`."""
 
     unit: str
     usual: float

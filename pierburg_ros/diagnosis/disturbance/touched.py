@@ -1,4 +1,4 @@
-"""Where a simulation begins again and again: the stretches that nothing which acts elsewhere explains, left out."""
+"""For simulations in stretches: stretches are left out if nothing that acts elsewhere explains them."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span, merged, spans_of
 
 TOUCHED = "nothing that acts elsewhere explains it, as if the shaft had been pushed or held"
-"""Why a stretch is left out."""
+"""The reason for leaving out a stretch."""
 ROUNDS = 5
-"""How often stretches are set apart and the others fitted again. Work: each is a brief fit; pushed runs (n = 3) needed
-two or three."""
+"""How often stretches are set apart and the others are fitted again. Work: each time is a brief fit; pushed runs (n =
+3) needed two or three."""
 
 
 def untouched(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Data | None:
     """`data` without the stretches whose error lies far above that of all others; None where there are none.
 
-    Or where an actuator is not simulated in stretches, since it forgets by itself how it began.
+    None also where an actuator is not simulated in stretches: it forgets its initial state by itself.
 
-    A push on a pendulum is over after a stretch or two, but its squared error may be all that a fit sees. None, too,
-    where that would be more than a quarter of the recordings: then something acts there.
+    A push on a pendulum is over after a stretch or two, but its squared error may dominate the fit. None also if the
+    stretches are more than a quarter of the recordings: then an effect acts there.
     """
     if any(run.shooting is None for run in data.runs):
         return None
@@ -49,7 +49,7 @@ def untouched(data: Data, nominal: Model, recordings: Sequence[Recording]) -> Da
 
 
 def _touched(data: Data, nominal: Model) -> dict[int, tuple[Span, ...]]:
-    """The spans [s] that lie far out, by the number of their recording."""
+    """The spans [s] with an error far above the others, by the number of their recording."""
     drifts, kept = Explanation(drifting(nominal)), np.ones(data.train.size, dtype=bool)
     for _ in range(ROUNDS):
         fit = Estimator(_trained_on(data, kept), nominal).fit(drifts, iterations=BRIEF, forgiving=True)
@@ -64,7 +64,7 @@ def _touched(data: Data, nominal: Model) -> dict[int, tuple[Span, ...]]:
 
 
 def _inlying(data: Data, model: Model) -> Flags:
-    """Which samples belong to stretches whose error is not far above the median of all, shape (samples,)."""
+    """Which samples belong to stretches whose error is not far above the median of all stretches, shape (samples,)."""
     lengths, errors = [], []
     for run, residual in zip(data.runs, _of_runs(data, data.residual(model)), strict=True):
         assert run.shooting is not None

@@ -1,4 +1,4 @@
-"""An explanation together with a quantity that wanders, fitted at once."""
+"""An explanation and a quantity that wanders, fitted together."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
 from pierburg_ros.estimation.least_squares import BRIEF, FULL, minimise
 
 BEGUN = 12
-"""Iterations after which a fit is given up that leaves too much. Work: half of a whole fit; with six a true wander was
-once given up; not varied otherwise."""
+"""Iterations after which the search gives up a fit with too large a residual. Work: half of a whole fit. With six
+iterations a true wander was given up once; not varied otherwise."""
 HOPE = 4.0
-"""Mean square of forgiven residuals up to which it goes on. Work: at its end it is 0.9; those that came there had less
-after so many iterations."""
+"""Largest mean square of the residuals, large ones by their logarithm, with which such a fit goes on. Work: it is 0.9
+at the end of a fit; fits that came there were below the limit after `BEGUN` iterations."""
 FARTHEST = 4.0
-"""Bound of a wander, in usual sizes. Chosen: a bound that no fit should meet; not varied."""
+"""Bound of a wander, in usual sizes. Chosen: no fit should reach this bound; not varied."""
 ROUGHLY = 1e-3
-"""Share of its cost that an iteration must gain for the fit to go on. Work: what is gained later decides nothing."""
+"""Smallest share of its cost that an iteration must gain for the fit to go on. Work: later gains decide nothing."""
 STEP = 0.02
 """Step of the finite differences, in usual sizes. Derived: 0.2 % of the supply, which moves the valve by its noise."""
 
 
 @dataclass(frozen=True)
 class Wandered:
-    """Where a joint fit ended: the values at the knots, and what is left over the noise on samples that trained and on
-    those that validate."""
+    """The result of a joint fit: the values at the knots, and the error over the noise on training and validation
+    samples."""
 
     course: Course
     values: Signal
@@ -39,9 +39,9 @@ class Wandered:
     validated: float
 
     def kept_apart(self, data: Data) -> Data:
-        """`data` in which what the course leaves counts as noise, and as much of the evidence as it could give is none.
+        """`data` in which the error that the course leaves counts as noise, and a residual of its size is no evidence.
 
-        No course through a few knots is exact, and a quantity that is off by a little would be found to drift.
+        No course through a few knots is exact. Otherwise a small error of the course would be reported as a drift.
         """
         left = max(self.trained, self.validated, 1.0)
         return data.kept_apart(data.noise * float(np.sqrt(left**2 - 1.0)))
@@ -50,7 +50,7 @@ class Wandered:
 def wandered(data: Data, fit: Fit, slow: Slow, estimator: Estimator) -> Wandered:
     """The quantity's course beside the explanation of `fit`, both fitted to the training samples.
 
-    First large errors are forgiven, as a slip at the wrong moment displaces all that follows.
+    At first large errors count by their logarithm, since a slip at the wrong moment displaces all that follows.
     """
     times = [each.time for each in data.runs]
     course = Course.over(float(times[0][0]), float(times[-1][-1]), data.scales.time)

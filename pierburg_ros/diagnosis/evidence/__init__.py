@@ -1,1 +1,1 @@
-"""What the recordings hold: runs, their noise, what the shaft does in them, the torque that a model misses."""
+"""What the recordings contain: runs, their noise, the motion of the shaft, the torque that a model lacks."""

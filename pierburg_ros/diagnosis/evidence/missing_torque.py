@@ -1,4 +1,4 @@
-"""What the data say of the torque that a model lacks, sample by sample while the shaft moves."""
+"""The torque that a model lacks according to the data, sample by sample while the shaft moves."""
 
 from __future__ import annotations
 
@@ -19,22 +19,23 @@ from pierburg_ros.plant.simulate import motor_torque
 from pierburg_ros.plant.torques.missing import missing
 
 SPOT = 0.032
-"""Width of the bins in which tight spots are looked for, as a share of the travel. Derived: the narrowest that a blind
+"""Width of the bins in which tight spots are searched, as a share of the travel. Derived: the narrowest that a blind
 trial conceals; only starts of a search come from it."""
 MOVING = 0.006
-"""Share of the no-load speed from which friction has a known sign. Derived: twice what counts as standing still."""
+"""Share of the no-load speed from which friction has a known sign. Derived: twice the limit of standing still."""
 CERTAIN = 4.0
-"""So many standard deviations of its noise make a velocity certain. Derived: white noise does so with 6e-5."""
+"""Standard deviations of its noise from which a velocity is certain. Derived: white noise reaches them with probability
+6e-5."""
 SPAN = 2.6
-"""Shortest span of time in which a load is looked for, in the actuator's own; longer in a recording of more than 120 of
-them. Chosen: a quarter of a second for the valve; only starts of a search come from it."""
+"""Shortest span of time in which a load is searched, in the actuator's own time; longer in a recording of more than 120
+such spans. Chosen: a quarter of a second for the valve; only starts of a search come from it."""
 
 
 @dataclass(frozen=True)
 class MissingTorque:
     """The load torque that a model lacks where the shaft moves, with time, angle and velocity, shape (moving,).
 
-    All in multiples of the actuator's own scales, as starts of a search are.
+    All are in multiples of the actuator's own scales, like the starts of a search.
     """
 
     time: Signal
@@ -42,16 +43,16 @@ class MissingTorque:
     velocity: Signal
     torque: Signal
     gear_ratio: float
-    """Radians that the motor turns while the shaft turns by 1 here."""
+    """Angle of the motor [rad] for each unit of `angle`."""
     end: float
     """Last moment of the recording."""
 
     def turns(self, between: tuple[float, float], most: int) -> list[float]:
-        """The clearest rhythms over the angle [periods per motor revolution], clearest first."""
+        """The clearest frequencies over the angle [periods per motor revolution], clearest first."""
         return rhythms(self.angle * self.gear_ratio / (2 * math.pi), self.torque, between, most)
 
     def pulses(self, between: tuple[float, float], most: int) -> list[float]:
-        """The clearest rhythms in time, clearest first."""
+        """The clearest frequencies over time, clearest first."""
         return rhythms(self.time, self.torque, between, most)
 
     def spans(self, most: int) -> list[tuple[float, float, float]]:
@@ -59,17 +60,17 @@ class MissingTorque:
         return spans(self.time, self.torque, self.end, most)
 
     def tight_spots(self, most: int) -> list[float]:
-        """Angles at which more friction is missing than elsewhere, the clearest first."""
+        """Angles at which more friction is missing than elsewhere, clearest first."""
         return tight_spots(self, most)
 
 
 def missing_torque(data: Data, run: Run, model: Model) -> MissingTorque:
-    """What the load torque of `model` lacks."""
+    """The load torque that `model` lacks."""
     return _of_error(data, run, model) if data.actuator.load == "spring" else _of_motion(data, run, model)
 
 
 def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
-    """From the measured motion alone, inertia included, where no spring makes an error fade as it came."""
+    """The missing torque from the measured motion alone, inertia included, where no spring makes an error decay."""
     own = data.scales
     instant = INSTANT * own.time
     grid = np.arange(run.time[0], run.time[-1], instant)
@@ -91,16 +92,16 @@ def _of_motion(data: Data, run: Run, model: Model) -> MissingTorque:
 
 
 def _slowest(data: Data, run: Run, instant: float) -> float:
-    """Velocity [rad/s] from which friction has a known sign: it is certain beside the noise of two instants' means."""
+    """Velocity [rad/s] from which friction has a known sign, given the noise of the means over two instants."""
     samples = max(instant / float(np.median(np.diff(run.time))), 1.0)
     return CERTAIN * data.noise * abs(data.angle_per_unit) / (math.sqrt(2.0 * samples) * instant)
 
 
 def _of_error(data: Data, run: Run, model: Model) -> MissingTorque:
-    """From the error of a simulation.
+    """The missing torque from the error of a simulation.
 
     While model and shaft slide the same way, damping d(error)/dt + stiffness error = -(missing torque). This is
-    equation (6) of the paper without the inertia, which is out of reach (time constant 15 us).
+    equation (6) of the paper without the inertia, which is too fast to observe (time constant 15 us).
     """
     value = model.values
     own = data.scales
@@ -139,7 +140,7 @@ def _averaged(time: Signal, values: Signal, grid: Signal) -> Signal:
 
 
 def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[float, float, float]]:
-    """Stretches (start, end or 0 for never, torque) in which the mean of `torque` stands out."""
+    """Spans of time (start, end or 0 for never, torque) in which the mean of `torque` stands out, at most `most`."""
     width = max(end / 120.0, SPAN)
     bins = np.floor(time / width).astype(int)
     count = np.bincount(bins, minlength=int(end / width) + 1).astype(float)
@@ -167,7 +168,7 @@ def spans(time: Signal, torque: Signal, end: float, most: int) -> list[tuple[flo
 
 
 def tight_spots(missing: MissingTorque, most: int) -> list[float]:
-    """Angles at which more friction is missing than elsewhere, the clearest first, at most `most`."""
+    """Angles at which more friction is missing than elsewhere, clearest first, at most `most`."""
     if missing.angle.size < 20:
         return []
     against = missing.torque * np.sign(missing.velocity)

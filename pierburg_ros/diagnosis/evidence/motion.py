@@ -1,4 +1,4 @@
-"""What the shaft does in a recording: angle, velocity, rest, reversals and stops, sample by sample."""
+"""The motion of the shaft in a recording: angle, velocity, rest, reversals and stops, sample by sample."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
 
 INSTANT = 0.21
-"""Shortest time over which a motion is told, in the actuator's own: half the window of a velocity, and the grid of
-missing torque, of energy and of contact. Derived: 20 ms for the valve, ten samples at 500 Hz; with 3 mV of noise a
-velocity is then known to 0.025 rad/s."""
+"""Shortest time over which a motion is evaluated, in the actuator's own time: half the window of a velocity, and the
+grid of missing torque, of energy and of contact. Derived: 20 ms for the valve, ten samples at 500 Hz; with 3 mV of
+noise a velocity is then known to 0.025 rad/s."""
 SLOWEST = 0.003
-"""Share of the no-load speed below which the shaft counts as standing still, unless noise asks for more. Derived: twice
-the error that 3 mV of noise leave in a velocity of the valve."""
+"""Share of the no-load speed below which the shaft counts as standing still; more where the noise requires it. Derived:
+twice the error that 3 mV of noise cause in a velocity of the valve."""
 NEAR = 0.01
-"""Distance from a stop within which the shaft counts as on it, besides three times the noise, as a share of the travel.
-Chosen: a hundredth; not varied."""
+"""Distance from a stop within which the shaft counts as on it, as a share of the travel; three times the noise is
+added. Chosen: a hundredth; not varied."""
 AFTERMATH = 3.1
-"""How long after a standstill the movement counts as the first one, in the actuator's own time. Chosen: 0.3 s for the
-valve; it names windows and regimes and decides no verdict."""
+"""Time after a standstill in which a movement counts as the first one, in the actuator's own time. Chosen: 0.3 s for
+the valve; it names windows and regimes and decides no verdict."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """All of shape (samples,). The angle [rad] is read by the nominal sensor, the command is the one in force."""
+    """A motion, all of shape (samples,). The nominal sensor gives the angle [rad]; the command is the one in force."""
 
     time: Signal
     angle: Signal
@@ -42,29 +42,29 @@ class Motion:
     open: Flags
     actuator: Actuator
     angle_per_unit: float
-    """Angle of one unit of the measured quantity."""
+    """Angle [rad] of one unit of the measured quantity."""
 
     @property
     def scales(self) -> Scales:
-        """What is large for the actuator."""
+        """The scales of the actuator."""
         return self.actuator.scales
 
     @property
     def effort(self) -> Signal:
-        """The command as a share of a large one: a duty as it is."""
+        """The command as a share of a large one; a duty stays as it is."""
         large = {"duty": 1.0, "current": self.scales.current, "torque": self.scales.torque}
         return np.asarray(self.command / large[self.actuator.input])
 
     @property
     def direction(self) -> Signal:
-        """1 opening, -1 closing: of the present movement or the last one; 0 before the first."""
+        """1 opening, -1 closing: the direction of the present movement or the last one; 0 before the first."""
         sign = np.where(self.moving, np.sign(self.velocity), 0.0)
         last = np.maximum.accumulate(np.where(sign != 0.0, np.arange(sign.size), 0))
         return np.asarray(sign[last])
 
     @property
     def reversals(self) -> np.ndarray:
-        """Samples at which the shaft sets off against its last direction."""
+        """Samples at which the shaft starts to move against its last direction."""
         direction = self.direction
         return np.flatnonzero((np.diff(direction) != 0.0) & (direction[:-1] != 0.0)) + 1
 
@@ -75,7 +75,8 @@ class Motion:
 
     @property
     def time_at_rest(self) -> Signal:
-        """How long the shaft has stood still [s], or had before a movement begun a moment ago; else 0."""
+        """How long [s] the shaft has stood still, or had stood still before a movement that began a moment ago; else
+        0."""
         began = np.zeros(self.time.size)
         arrivals = np.flatnonzero(~self.moving[1:] & self.moving[:-1]) + 1
         began[arrivals] = self.time[arrivals]
@@ -91,7 +92,7 @@ class Motion:
 
     @property
     def time_since_reversal(self) -> Signal:
-        """Time since the shaft last turned round, or since the start [s]."""
+        """Time since the last reversal, or since the start [s]."""
         turned = np.concatenate([[0], self.reversals])
         place = np.searchsorted(turned, np.arange(self.time.size), side="right") - 1
         return np.asarray(self.time - self.time[turned[place]])
@@ -105,7 +106,7 @@ class Motion:
 
 
 def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
-    """What the shaft does in `run`, measured with `noise` (standard deviation, measured unit)."""
+    """The motion of the shaft in `run`, measured with `noise` (standard deviation, measured unit)."""
     nominal, scales = Model.nominal(actuator), actuator.scales
     angle, per_unit = turned(nominal, run.time, run.measured, run.quantity), angle_per_unit(nominal)
     interval = float(np.median(np.diff(run.time)))
@@ -134,9 +135,9 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
 
 
 def slope(time: Signal, values: Signal, half: float) -> Signal:
-    """Velocity of `values`: the means of `half` [s] after and before each sample, over their distance in time.
+    """Slope of `values`: the mean over `half` [s] after each sample minus that before it, over their distance in time.
 
-    Within `half` of either end, where too few samples are left, it is that of the nearest sample farther in.
+    Within `half` of either end too few samples are left: there it is the slope of the nearest sample farther inside.
     """
     total = np.concatenate([[0.0], np.cumsum(values)])
     moments = np.concatenate([[0.0], np.cumsum(time)])

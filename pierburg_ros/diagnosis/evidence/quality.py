@@ -1,4 +1,4 @@
-"""What recordings are like before anything is concluded from them, and what they cannot tell for that reason."""
+"""The quality of recordings before anything is concluded from them, and which questions it leaves open."""
 
 from __future__ import annotations
 
@@ -36,29 +36,30 @@ Kind = Literal[
 ]
 
 SHORTEST = 21.0
-"""Duration without which nothing can be fitted and judged, in the actuator's own time. Chosen: 2 s for the valve, less
-than two of its time constants, 1.15 s each; not varied. What forgets nothing has none, and is fitted in stretches."""
+"""Duration below which nothing can be fitted and judged, in the actuator's own time. Chosen: 2 s for the valve, less
+than two of its time constants, 1.15 s each; not varied. An actuator that does not forget its initial state has no such
+limit: it is fitted in stretches."""
 FEWEST = 200
-"""Samples without which nothing can be fitted and judged. Chosen: ten for each parameter and value of an effect; not
-varied."""
+"""Number of samples below which nothing can be fitted and judged. Chosen: ten for each parameter and value of an
+effect; not varied."""
 SHORT = 105.0
-"""Duration below which rare events and slow changes stay unseen, in the actuator's own time. Chosen: 10 s for the
+"""Duration below which rare events and slow changes are not detected, in the actuator's own time. Chosen: 10 s for the
 valve; it adds advice and decides no verdict."""
 SLOW_SAMPLING = 9.5
-"""Samples in the actuator's own time below which delays and lags that matter cannot be told from other errors. Derived:
-one sample period of the valve is then 10 ms, the delay itself. It adds advice and decides no verdict."""
+"""Samples in the actuator's own time below which delays and lags that matter cannot be distinguished from other errors.
+Derived: one sample period of the valve is then 10 ms, the delay itself. It adds advice and decides no verdict."""
 WANTED = 5.0
-"""Sampling to ask for, in multiples of the slowest that will do. Given: it is 500 Hz for the valve."""
+"""Recommended sampling rate, in multiples of the slowest sufficient one. Given: it is 500 Hz for the valve."""
 SATURATED = 0.9
-"""Share of time at full duty from which a recording counts as saturated throughout. Chosen: a tenth of the time is
-left to tell friction and spring; not varied."""
+"""Share of time at full duty from which a recording counts as saturated throughout. Chosen: a tenth of the time is left
+to identify friction and spring; not varied."""
 GAP = 3.0
-"""An interval of so many median ones is a gap. Given: so `gaps` is defined in diagnosis.json."""
+"""Length from which an interval is a gap, in median intervals. Given: `gaps` is defined so in diagnosis.json."""
 MOST_GAPS = 0.02
-"""Share of time in gaps that counts as many. Chosen: it adds advice and decides no verdict."""
+"""Share of time in gaps above which they count as many. Chosen: it adds advice and decides no verdict."""
 SHORT_TRAVEL = 0.22
-"""Share of the travel below which what depends on the angle stays unseen. Chosen: 20 degrees for the valve; it adds
-advice and decides no verdict."""
+"""Share of the travel below which effects that depend on the angle are not detected. Chosen: 20 degrees for the valve;
+it adds advice and decides no verdict."""
 
 RECORD: dict[Kind, str] = {
     "no_movement": "Record again with {input} steps large enough to move the shaft both ways.",
@@ -76,28 +77,29 @@ RECORD: dict[Kind, str] = {
     "open_stop": "To see whether the open stop gives and the sensor is right there, record a run to it, and press"
     " against it with more and less {input}.",
 }
-"""What to record next to lift each limit; `{input}` is what drives the actuator."""
+"""What to record next to remove each limit; `{input}` is what drives the actuator."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """Something about the recordings that keeps questions open; `finding` says what and which, in words."""
+    """A property of the recordings that leaves questions open; `finding` says which property and which questions, in
+    words."""
 
     kind: Kind
     finding: str
     decisive: bool = False
-    """Whether nothing at all can be concluded about the physics."""
+    """Whether it prevents every conclusion about the physics."""
     input: str = "duty"
     """What drives the actuator."""
 
     @property
     def record(self) -> str:
-        """What to record next to lift it."""
+        """What to record next to remove this limit."""
         return RECORD[self.kind].format(input=self.input)
 
 
 def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None:
-    """Raise InputError where a recording is too short for anything to be fitted and judged on it."""
+    """Raise InputError if a recording is too short to be fitted and judged."""
     shortest = SHORTEST * actuator.scales.time if forgets(actuator) else 0.0
     for recording in recordings:
         if recording.time.size < FEWEST or recording.duration < shortest:
@@ -111,7 +113,7 @@ def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None
 def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
     """Sampling, saturation, stops and excitation of all `runs`, and the `remarks` on dirty ones.
 
-    `noise` is its standard deviation, measured unit.
+    `noise` is the standard deviation of the noise, measured unit.
     """
     motions = [motion_of(run, actuator, noise) for run in runs]
     intervals = np.concatenate([np.diff(run.time) for run in runs])
@@ -132,7 +134,7 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks:
 
 
 def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Limit]:
-    """Everything that keeps these runs from telling more, the gravest first."""
+    """All limits to what these runs can show, most serious first."""
     motions = [motion_of(run, actuator, noise) for run in runs]
     limits = [
         *_limits_of_movement(motions, runs, noise),
@@ -264,7 +266,7 @@ def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
 
 
 def excited(motions: Sequence[Motion]) -> str:
-    """What was moved how far, in words."""
+    """How the shaft was moved and how far, in words."""
     actuator, command = motions[0].actuator, np.concatenate([motion.command for motion in motions])
     ways = {float(sign) for motion in motions for sign in np.unique(motion.direction) if sign != 0.0}
     direction = {0: "no movement", 1: "one direction"}.get(len(ways), "both directions")
@@ -284,7 +286,7 @@ def excited(motions: Sequence[Motion]) -> str:
 
 
 def _at_limit(motion: Motion) -> Flags:
-    """Whether the input is all there is: of a duty its magnitude says so."""
+    """Whether the input is at its limit, shape (samples,): a duty by its magnitude, another input never."""
     full = np.abs(motion.command) >= 0.999 if motion.actuator.input == "duty" else np.zeros(motion.time.size)
     return np.asarray(full, dtype=np.bool_)
 

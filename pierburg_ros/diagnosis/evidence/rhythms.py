@@ -1,4 +1,5 @@
-"""Rhythms of a torque over angle or time: its spectrum at uneven places, beside what wanders without a rhythm."""
+"""Frequencies of a torque over angle or time: peaks of its spectrum above the background, from unevenly spaced
+samples."""
 
 from __future__ import annotations
 
@@ -10,25 +11,26 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.torque_balance import finest
 
 FEWEST = 20
-"""Samples from which a rhythm is looked for. Chosen: fewer give each of a dozen frequencies what it wants."""
+"""Least number of samples for a search of frequencies. Chosen: with fewer, each of a dozen frequencies fits them."""
 OUTLYING = 4.0
-"""Torque [median of its magnitude] beyond which it is clipped. Chosen: of white noise 0.7 % lies beyond; a slip does
-not pass for a rhythm."""
+"""Torque beyond which it is clipped [median of its magnitude]. Chosen: 0.7 % of white noise lies beyond; a slip is not
+mistaken for a frequency."""
 FINE = 4
-"""Frequencies looked at for each period more over the whole place, and bins of place for each period of the highest.
-Derived: the power half way between two of them is 0.95 of its peak, and that of the highest frequency 0.9."""
+"""Number of frequencies for each further period over the whole range of places, and of bins for each period of the
+highest frequency. Derived: halfway between two frequencies the power is 0.95 of its peak, and at the highest frequency
+0.9."""
 NEIGHBOURS = 12
-"""Periods over the whole place by which frequencies count as neighbours, to either side. Chosen: 96 values say what a
-spectrum is there without a rhythm to 15 %; not varied."""
+"""Distance within which frequencies count as neighbours on either side, in periods over the whole range of places.
+Chosen: 96 values give the background of the spectrum to 15 %; not varied."""
 
 
 def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: int) -> list[float]:
     """The strongest and the clearest frequencies [1 / unit of place] of `torque` at uneven `place`, at most `most`.
 
-    They lie `between` two, above one period over the whole place and below what the samples tell. What is missing also
-    wanders, the more the slower, so one counts by its power, the next by how far it stands out from the frequencies
-    beside it, and so on. Each is taken away before the next is looked for (as by Hogbom's CLEAN, Astron. Astrophys.
-    Suppl. 15, 1974), since at uneven places one shows at other frequencies too.
+    They lie `between` two limits, above one period over the whole range and below the highest that the samples resolve.
+    The missing torque also wanders, more so at lower frequencies. So the search takes one frequency by its power, the
+    next by how far it stands out from its neighbours, and so on. It subtracts each before it looks for the next (as in
+    Hogbom's CLEAN, Astron. Astrophys. Suppl. 15, 1974): in unevenly spaced samples a frequency also appears at others.
     """
     frequencies = _frequencies(place, *between)
     left = clipped(torque) if frequencies.size else torque
@@ -47,19 +49,19 @@ def rhythms(place: Signal, torque: Signal, between: tuple[float, float], most: i
 
 
 def spacing(place: Signal) -> float:
-    """Distance of the frequencies that are looked at [1 / unit of place]."""
+    """Spacing of the frequencies that are tried [1 / unit of place]."""
     return 1.0 / (FINE * float(np.ptp(place)))
 
 
 def clipped(torque: Signal) -> Signal:
-    """`torque` from its median, with what lies far out brought in."""
+    """`torque` minus its median, clipped at `OUTLYING`."""
     centred = torque - np.median(torque)
     limit = OUTLYING * float(np.median(np.abs(centred)))
     return np.asarray(np.clip(centred, -limit, limit))
 
 
 def waves(place: Signal, torque: Signal, frequencies: list[float]) -> Signal:
-    """The sines of some `frequencies` [1 / unit of place] and the mean that come closest to `torque`."""
+    """The mean and the sines of some `frequencies` [1 / unit of place] that fit `torque` best, shape (samples,)."""
     turned = 2.0 * math.pi * np.outer(place, frequencies)
     known = np.concatenate([np.ones((place.size, 1)), np.cos(turned), np.sin(turned)], axis=1)
     return np.asarray(known @ np.linalg.lstsq(known, torque, rcond=None)[0])
@@ -72,7 +74,7 @@ def _frequencies(place: Signal, lowest: float, highest: float) -> Signal:
 
 
 def _power(place: Signal, torque: Signal, frequencies: Signal) -> Signal:
-    """Power of the mean `torque` over place at each of the `frequencies`, which are evenly spaced."""
+    """Power of the mean of `torque` in bins of place, at each of the `frequencies`, which are evenly spaced."""
     width = 1.0 / (FINE * float(frequencies[-1] + spacing(place)))
     bins = np.floor((place - np.min(place)) / width).astype(int)
     count = np.bincount(bins)
@@ -84,7 +86,7 @@ def _power(place: Signal, torque: Signal, frequencies: Signal) -> Signal:
 
 
 def _beside(power: Signal) -> Signal:
-    """What is usual beside each frequency: the mean of a spectrum whose median is that of the neighbours."""
+    """The usual power near each frequency: the mean of a spectrum whose median is that of the neighbours."""
     from scipy.ndimage import median_filter  # takes long to load
 
     width = min(2 * NEIGHBOURS * FINE + 1, power.size)

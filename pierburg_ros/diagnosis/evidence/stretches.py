@@ -1,4 +1,4 @@
-"""Recordings cut into stretches that are each simulated from the measured state."""
+"""Recordings cut into stretches, each simulated from the measured state."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from pierburg_ros.estimation.initial_state import InitialState
 from pierburg_ros.estimation.run import Run
 
 SETTLED = 5
-"""Samples to either side of a restart over which the angle is averaged, and the least that a stretch has. Derived: the
-mean of eleven is known to 0.3 of the noise."""
+"""Samples on either side of a restart over which the angle is averaged; also the shortest length of a stretch. Derived:
+the mean of eleven is known to 0.3 of the noise."""
 
 
 def forgotten(effects: Iterable[str]) -> bool:
-    """Whether none of some effects remembers longer than a stretch: what does cannot start afresh."""
+    """Whether no effect remembers longer than a stretch: an effect that does cannot be restarted."""
     return all(EFFECT[effect].memory != "lasting" for effect in effects)
 
 
 def in_stretches(data: Data, length: float) -> Data:
-    """`data` in stretches of `length` [s], unless its runs begin again and again anyway.
+    """`data` in stretches of `length` [s], unless its runs are simulated in stretches already.
 
-    They do where nothing makes an actuator forget how it began: there so long a stretch may end anywhere.
+    They are if the actuator does not forget its initial state. A simulation over `length` may then end anywhere.
     """
     return data if data.in_stretches else restarted(data, length)
 
@@ -34,7 +34,7 @@ def in_stretches(data: Data, length: float) -> Data:
 def restarted(data: Data, length: float) -> Data:
     """`data` with every run cut into stretches of `length` [s], each starting at the measured angle and velocity.
 
-    Loads keep to the time of the recording; whatever else a model remembers (heat, play, bristles) starts afresh.
+    Loads keep the time of the recording; all else that a model remembers (heat, play, bristles) is reset.
     """
     runs = tuple(
         stretch for run in data.runs for stretch in _stretches(run, motion_of(run, data.actuator, data.noise), length)
@@ -43,9 +43,10 @@ def restarted(data: Data, length: float) -> Data:
 
 
 def leading_to(data: Data, length: float, last: float) -> Data:
-    """Stretches of `length` [s], each from the measured angle and velocity, that lead to the samples that test.
+    """Stretches of `length` [s] that lead to test samples, each from the measured angle and velocity.
 
-    Each leads to those within its `last` [s]; its others train. A sample too near the beginning of its run has none.
+    The test samples lie within the `last` [s] of each stretch; its other samples train. A test sample too near the
+    beginning of its run has no stretch.
     """
     runs = tuple(
         stretch
@@ -82,7 +83,8 @@ def _stretches(run: Run, motion: Motion, length: float) -> list[Run]:
 
 
 def _start(run: Run, motion: Motion, sample: int) -> InitialState:
-    """What the samples around `sample` say: their mean while the shaft stands still, with its velocity as it moves."""
+    """The initial state from the samples around `sample`: their mean while the shaft stands still, with its velocity
+    otherwise."""
     if sample == 0 and run.shooting is None:
         return run.start
     near = slice(max(sample - SETTLED, 0), sample + SETTLED + 1)

@@ -1,4 +1,4 @@
-"""An effect held at a strength while the base parameters follow: what they can make possible."""
+"""An effect held at a fixed strength while the base parameters are refitted: whether they can make it possible."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from pierburg_ros.estimation.explanation import Variant
 from pierburg_ros.plant import Model
 
 TRUSTED = 1.0
-"""Farthest that the others follow, in coordinates, most of which are logarithms: first by a linear step, then by a fit.
-Derived: a straight line says nothing of a value e times as large. Measured: beside static friction a descent tried a
-Stribeck velocity a hundred times too large, and a limit of a compliant gear took 75 s in place of 0.2 (n = 1)."""
+"""Largest change of the other parameters in coordinates, which are mostly logarithms: first by a linear step, then by a
+fit. Derived: a straight line says nothing about a value e times as large. Measured: beside static friction a descent
+tried a Stribeck velocity a hundred times too large. A limit of a compliant gear took 75 s instead of 0.2 (n = 1)."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One way in which an effect may act: its variant, a start, and the parameter of it that is its strength."""
+    """One way in which an effect may act: its variant, a start, and the parameter that is its strength."""
 
     variant: Variant
     start: Start
@@ -37,27 +37,28 @@ class Case:
         return EFFECT[self.variant.effect].parameter(self.parameter).inverse
 
     def at(self, factor: float) -> Start:
-        """The start with its strength multiplied."""
+        """The start with its strength multiplied by `factor`."""
         value = self.start[self.parameter]
         return {**self.start, self.parameter: value / factor if self.above else value * factor}
 
     def factors(self, nominal: Model, duration: float) -> tuple[float, float]:
-        """The least and the largest factor at which the strength is within what a search would look at."""
+        """The smallest and the largest factor at which the strength is within the range of a search."""
         axis = Coordinates((f"{self.variant.effect}.{self.parameter}",), nominal, duration).axes[0]
         own = abs(self.start[self.parameter])
         low, high = max(axis.value(axis.lower), 0.0), axis.value(axis.upper)
         return (own / high, own / low) if self.above else (low / own, high / own)
 
     def strength(self, factor: float) -> float:
-        """Size of the strength at a factor, larger where the effect is stronger."""
+        """Size of the strength at a factor; larger where the effect is stronger."""
         value = abs(self.at(factor)[self.parameter])
         return 1.0 / max(value, 1e-300) if self.above else value
 
 
 class Held:
-    """An effect held at a strength, beside `base` parameters that follow.
+    """An effect held at a strength, beside `base` parameters that are refitted.
 
-    What is counted from a base parameter is held as what it exceeds that, or the parameter would swallow it.
+    A value that is counted from a base parameter is held by its excess over that. Otherwise the parameter would absorb
+    it.
     """
 
     def __init__(self, estimator: Estimator, base: Fit, case: Case) -> None:
@@ -70,7 +71,7 @@ class Held:
         self._slopes = np.insert(base.solution.jacobian, self._place, 0.0, axis=1)
 
     def nearest(self, factor: float, ways: Sequence[Signal], iterations: int, enough: float) -> Fit | None:
-        """The lowest of fits on some `ways`, or the first that comes to what is `enough`."""
+        """The fit of lowest chi2 from some `ways`, or the first whose chi2 is `enough`."""
         fits: list[Fit] = []
         for way in ways:
             fit = self.fit(factor, way, iterations, enough)
@@ -81,7 +82,7 @@ class Held:
         return min(fits, key=lambda fit: fit.chi2, default=None)
 
     def fit(self, factor: float, way: Signal, iterations: int, enough: float = -math.inf) -> Fit | None:
-        """The others fitted with a factor on the strength, from where they follow it on a `way`, by so much a unit.
+        """The other parameters fitted with a factor on the strength, from `base` moved by the factor times a `way`.
 
         None where there is no such model.
         """
@@ -103,11 +104,11 @@ class Held:
             return None
 
     def way(self, fit: Fit, factor: float) -> Signal:
-        """By how much for each unit of a factor the others have followed in a `fit`."""
+        """The change of the other parameters in a `fit`, per unit of the factor."""
         return np.asarray(np.delete(fit.solution.point, self._place) - self._base.solution.point) / factor
 
     def value(self, factor: float) -> float | None:
-        """The strength at a factor, counted from `base`; None where it is beyond what is declared, or infinite."""
+        """The strength at a factor, counted from `base`; None where it is infinite or beyond what is declared."""
         declared = self._effect.parameter(self._case.parameter)
         if not math.isfinite(factor):
             return None

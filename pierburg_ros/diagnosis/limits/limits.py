@@ -1,4 +1,4 @@
-"""The strength that recordings exclude at 95 %, of every effect that is not named and able to act."""
+"""The strength that recordings exclude at 95 %, of every effect that can act and is not named."""
 
 from __future__ import annotations
 
@@ -27,36 +27,36 @@ from pierburg_ros.estimation.likelihood import TIED
 from pierburg_ros.workers import workers
 
 ONE_SIDED = 2.71
-"""Rise of chi2 at a strength that is excluded with 95 %, to one side. Derived: the square of 1.645, the 95 % quantile
-of the normal distribution."""
+"""Rise of chi2 at a strength that is excluded at 95 %, one-sided. Derived: the square of 1.645, the 95 % quantile of
+the normal distribution."""
 STARTS = 6
-"""Starts of one way to act that are scanned: places, rhythms, phases. Work: each costs up to `STEPS` simulations; not
-varied."""
+"""Number of starts that are scanned for one way to act: places, frequencies, phases. Work: each costs up to `STEPS`
+simulations; not varied."""
 STEPS = 4
-"""Strengths that are simulated for one start. Derived: the rise goes by about the square of the strength, so each
-simulation tells the next one; four come within a tenth wherever that holds to a third."""
+"""Number of strengths that are simulated for one start. Derived: chi2 rises about with the square of the strength, so
+each simulation gives the next strength. Four come within a tenth wherever this law holds to a third."""
 AS_FORESEEN = 0.1
-"""Share of the foreseen rise up to which a simulation may miss what linear steps foresee, as a sum of squares, for that
-to set the limit. Derived: where the rise is what is allowed it is off by 2 sqrt(0.1) + 0.1 at most, 0.73 of itself,
-and the strength by sqrt(1.73), which is less than `WIDENED`."""
+"""Largest sum of squares by which a simulation may deviate from the linear prediction that sets the limit, as a share
+of the predicted rise. Derived: where the rise is the allowed one, its error is at most 2 sqrt(0.1) + 0.1, 0.73 of the
+rise. The strength is then off by sqrt(1.73), which is less than `WIDENED`."""
 WIDENED = 1.5
-"""Factor by which a strength grows that a fit of the other parameters has shown to be possible after all. Chosen: a
-limit is then at most so much too cautious; not varied."""
+"""Factor by which a strength is raised after a fit of the other parameters has shown it to be possible. Chosen: a limit
+is then too cautious by this factor at most; not varied."""
 ATTEMPTS = 6
-"""Strengths at which the others are fitted before the effect counts as not excluded. Work: each costs half a brief
-descent; together up to 58 times the linear estimate."""
+"""Strengths at which the other parameters are fitted before the effect counts as not excluded. Work: each costs half a
+brief descent; together they reach up to 58 times the linear estimate."""
 
 SHARE, LEAST = 0.25, 5.0
-"""Time that limits take at most, as a share of that before them, and [s] in any case. Work: they take 1 to 3 s, but
-where an effect makes the model chatter one of them took 75 s after a search of 3 s; not varied."""
+"""Time that the limits may take: a share of the time before them, or [s] if that is more. Work: they take 1 to 3 s. One
+limit took 75 s after a search of 3 s, because the effect made the model chatter; not varied."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The strength of an effect from which on it contradicts the recordings with 95 %.
+    """The strength of an effect from which it contradicts the recordings at 95 %.
 
-    `value` of its `parameter`, in the parameter's unit. `above`: the effect is the stronger the smaller its parameter
-    (a stiffness), so that the truth lies above the value and not below.
+    `value` is that of its `parameter`, in the parameter's unit. `above`: the effect is stronger if its parameter (a
+    stiffness) is smaller, so the true value lies above `value` and not below.
     """
 
     effect: str
@@ -67,7 +67,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits found, and the ids of effects for whose limits there was no time."""
+    """The limits found, and the ids of effects whose limits were not tested for lack of time."""
 
     found: Sequence[Limit] = ()
     untested: Sequence[str] = ()
@@ -75,11 +75,11 @@ class Limits:
 
 @dataclass(frozen=True)
 class _Foreseen:
-    """What linear steps foresee of a case: the factor on its strength that is excluded, and what is there.
+    """The linear prediction for a case: the factor on its strength that is excluded, and the residual there.
 
-    A unit of the factor makes a `change` of the residual. With what the base parameters do to follow it, the `residual`
-    there has a chi2 that is just `possible`: `allowed` above the least for any strength. Factors beyond the `largest`
-    are not looked at.
+    A unit of the factor makes a `change` of the residual, and the base parameters are refitted linearly. The `residual`
+    at the factor then has a chi2 that is just `possible`: `allowed` above the least for any strength. Factors beyond
+    the `largest` are not tested.
     """
 
     case: Case
@@ -92,11 +92,11 @@ class _Foreseen:
 
     @property
     def rise(self) -> float:
-        """How far chi2 rises above its least: by more than is allowed at the least strength that is looked at."""
+        """Rise of chi2 above its least; more than `allowed` if the factor is the smallest that is tested."""
         return _squared(self.residual) - self.possible + self.allowed
 
     def missed(self, fit: Fit) -> float:
-        """The sum of squares by which a fit there misses what is foreseen."""
+        """Sum of squares by which the residual of a fit there deviates from the prediction."""
         return _squared(fit.solution.residual - self.residual)
 
 
@@ -109,11 +109,11 @@ def limits(
 ) -> Limits:
     """The limit of every effect that `final` does not name, where these recordings set one.
 
-    The strength is raised until the likelihood has fallen by what 95 % allows, while the base parameters that the
-    recordings tell apart follow (profile likelihood): linearly, and fitted where a simulation at the limit shows that
-    this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. Of several places, rhythms or
-    phases at which an effect may act, the weakest limit counts. At the `deadline`, or once they have taken their share
-    of the time, those found by then are kept.
+    The search raises the strength until the likelihood has fallen by what 95 % allows (profile likelihood). The base
+    parameters that the recordings distinguish are refitted linearly, and by a fit where a simulation at the limit shows
+    that this is not enough. What `final` leaves is part of the likelihood, as a discrepancy. If an effect may act at
+    several places, frequencies or phases, the weakest limit counts. At the `deadline`, or once the limits have taken
+    their share of the time, those found by then are kept.
     """
     deadline = deadline or Deadline()
     own = deadline.at_most(max(SHARE * deadline.spent, LEAST))
@@ -121,7 +121,7 @@ def limits(
     for case in _cases(found, final):
         if case.variant.effect not in final.explanation.effects:
             strengths.setdefault((case.variant.effect, case.parameter), []).append(case)
-    # what takes longest begins first: a simulation that is stiff, or stops and goes
+    # the slowest begin first: simulations that are stiff, or that stop and go
     slow_first = sorted(strengths, key=lambda key: not (EFFECT[key[0]].jumps or strengths[key][0].above))
     tested: dict[tuple[str, str], Limit | None] = {}
     tell = staged(progress, "what is ruled out", len(strengths))
@@ -144,7 +144,7 @@ def limits(
 
 
 def _limit(estimator: Estimator, base: Fit, cases: Sequence[Case]) -> Limit | None:
-    """The weakest limit among the ways in which an effect may act by one strength."""
+    """The weakest limit over the ways in which an effect may act by one strength; None where one way has none."""
     foreseen = [_foreseen(estimator, base, case) for case in cases]
     known = [each for each in foreseen if each is not None]
     if len(known) < len(foreseen):
@@ -154,7 +154,8 @@ def _limit(estimator: Estimator, base: Fit, cases: Sequence[Case]) -> Limit | No
 
 
 def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
-    """`final` with all base parameters free that the recordings tell apart, and the likelihood that limits go by."""
+    """The estimator with the likelihood for limits, and `final` with all base parameters free that the recordings
+    distinguish."""
     data = with_validation(found.data)
     residual = data.residual(final.model, final.switch)
     discrepancy = Kalman(data, data.train).most_likely(residual)
@@ -167,10 +168,11 @@ def _base(found: Found, final: Fit) -> tuple[Estimator, Fit]:
 
 
 def _cases(found: Found, final: Fit) -> Iterator[Case]:
-    """Each way to act with a single strength, from starts spread over all there are; one of nothing cannot grow.
+    """Each way to act with a single strength, from starts spread over all; a start of strength 0 cannot grow and is
+    left out.
 
-    Behind a filter of the input, whose time the recording itself tells, what is late has no limit: the filter may be
-    shorter.
+    If the input was recorded behind a filter, the recording itself gives the filter's time. An effect that acts late
+    then has no limit: the filter may be shorter.
     """
     for variant, starts in starts_of(found.data, final.model).items():
         effect = EFFECT[variant.effect]
@@ -186,16 +188,16 @@ def _spread(starts: Sequence[Start]) -> Sequence[Start]:
 
 
 def _allowed(case: Case, base: Fit) -> float:
-    """Rise of chi2 within which a strength is possible."""
+    """Rise of chi2 up to which a strength is possible."""
     return (TIED if EFFECT[case.variant.effect].jumps else ONE_SIDED) * max(base.ratio**2, 1.0)
 
 
 def _foreseen(estimator: Estimator, base: Fit, case: Case) -> _Foreseen | None:
-    """At what strength of a start it is excluded while the base parameters follow linearly; None where at none.
+    """The strength of a start that is excluded while the base parameters are refitted linearly; None where none is.
 
-    A change that goes by the strength, s u, leaves (r - s u)^2: least at u r / u^2, and by the square root of what is
-    allowed beyond that over the norm of u it is excluded. A strength too small for a search is not looked at, since it
-    may take the simulator for ever; nor is one too large.
+    A change s u, proportional to the strength s, leaves (r - s u)^2, least at s = u r / u^2. A strength is excluded if
+    it is larger by the square root of the allowed rise over the norm of u. A strength too small for a search is not
+    tested, since it may take the simulator for ever. A strength too large for it is not tested either.
     """
     projected = projection(base)
     residual = projected(base.solution.residual)
@@ -223,14 +225,15 @@ def _foreseen(estimator: Estimator, base: Fit, case: Case) -> _Foreseen | None:
 
 
 def _moved(base: Fit, change: Signal) -> Signal:
-    """How the base parameters follow a change of the residual: not where next to nothing tells them apart."""
+    """The linear change of the base parameters after a change of the residual; directions hardly distinguished stay
+    unchanged."""
     slopes = base.solution.jacobian
     scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     return np.asarray(np.linalg.lstsq(slopes / scale, change, rcond=INDEPENDENT)[0] / scale)
 
 
 def _confirmed(estimator: Estimator, base: Fit, foreseen: _Foreseen) -> Limit | None:
-    """The limit where the base parameters do not make the strength possible; None where they always do."""
+    """The limit, if the base parameters do not make the strength possible; None where they always do."""
     case = foreseen.case
     held = Held(estimator, base, case)
     value = held.value(_factor(held, base, foreseen))
@@ -238,9 +241,9 @@ def _confirmed(estimator: Estimator, base: Fit, foreseen: _Foreseen) -> Limit | 
 
 
 def _factor(held: Held, base: Fit, foreseen: _Foreseen) -> float:
-    """The factor on the strength that is excluded, infinite where none is.
+    """The factor on the strength that is excluded; infinite where none is.
 
-    One simulation tells whether all is as foreseen; if not, fits of the base parameters do.
+    One simulation tests the linear prediction. If it deviates, fits of the base parameters find the factor.
     """
     way = _moved(base, foreseen.change)
     still = np.zeros_like(way)
@@ -254,10 +257,11 @@ def _factor(held: Held, base: Fit, foreseen: _Foreseen) -> float:
 
 
 def _excluded(held: Held, foreseen: _Foreseen, way: Signal) -> float:
-    """The factor at which the others do not make the strength possible, infinite where they always do.
+    """The factor at which the other parameters do not make the strength possible; infinite where they always do.
 
-    Of a strength that is possible they tell in what way they go for a larger one, and how much larger it may be. Where
-    a descent on that way ends early, one on the `way` that is foreseen, or from where they are, may not.
+    A fit at a possible strength gives the direction in which the others follow, and how much larger the strength may
+    be. A descent in that direction may end early. Further ones then start along the predicted `way`, and from the
+    unmoved parameters.
     """
     factor, ways, possible, excluded = foreseen.factor, [way], 0.0, math.inf
     for _ in range(ATTEMPTS):

@@ -1,4 +1,4 @@
-"""The mark that each effect could leave in the recordings: one that could leave none cannot be tested by them."""
+"""The mark that each effect could leave in the recordings: an effect that leaves none cannot be tested by them."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.workers import workers
 
 STARTS = 4
-"""Starts of one way to act that are simulated. Work: any of plausible strength leaves a mark where it can act; not
-varied."""
+"""Number of starts that are simulated for one way to act. Work: any start of plausible strength leaves a mark where it
+can act; not varied."""
 
 
 def marks(found: Found, final: Fit, jobs: int | None = None) -> dict[str, float]:
-    """The largest sum of squares [noise^2] that each effect `final` lacks could leave, at a plausible strength."""
+    """The largest sum of squares [noise^2] that each effect not in `final` could leave, at a plausible strength."""
     with workers(jobs) as pool:
         estimator = Estimator(found.data, found.nominal, pool.map)
         base = estimator.restated(final)
-        # all of them project on what these slopes leave
+        # computed once: all projections use these slopes
         _ = base.solution.jacobian
         ways = [
             way for way in starts_of(found.data, final.model).items() if way[0].effect not in final.explanation.effects

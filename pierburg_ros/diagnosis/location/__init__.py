@@ -1,1 +1,1 @@
-"""Where a mismatch is: windows of time, and ranges of what the shaft does."""
+"""Where a mismatch is: in windows of time, and in ranges of the shaft's motion."""

@@ -1,4 +1,4 @@
-"""Where in time a mismatch is: windows of the recording with what the shaft does in each."""
+"""Where in time a mismatch is: windows of the recording, with the motion of the shaft in each."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from pierburg_ros.diagnosis.evidence.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
 
 LONG = 10.5
-"""Length from which a window is described by its beginning and its reach, in the actuator's own time. Chosen: 1 s for
-the valve; it decides a word."""
+"""Length from which a window is described by its beginning and its range of motion, in the actuator's own time. Chosen:
+1 s for the valve; it decides a word."""
 RECENT = 5.25
-"""How long before a movement a pull counts as just before it, in the actuator's own time. Chosen: half a second for the
+"""Time within which a pull counts as just before a movement, in the actuator's own time. Chosen: half a second for the
 valve; it decides a word."""
 PLACE = 0.09
-"""Share of the travel within which the shaft is near one angle. Chosen: 8 degrees for the valve; it decides a word."""
+"""Range of angles that counts as near one angle, as a share of the travel. Chosen: 8 degrees for the valve; it decides
+a word."""
 PRESSING = 0.01
-"""Share of a large input from which the motor is said to press against a stop. Chosen: it decides a word."""
+"""Share of a large input from which the motor presses against a stop. Chosen: it decides a word."""
 
 
 def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, float]]) -> list[Location]:
-    """`windows` (start, end) [s] with what the shaft does, and the share of the energy of `residual` in each.
+    """`windows` (start, end) [s] with the motion of the shaft, and the share of the energy of `residual` in each.
 
     `residual` is that of the recalibrated nominal model on the samples of `motion`.
     """
@@ -41,7 +42,7 @@ def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, f
 
 
 def doing(motion: Motion, start: float, end: float) -> str:
-    """What the shaft does from `start` to `end` [s], in words: of a long window how it begins and how far it goes."""
+    """What the shaft does from `start` to `end` [s], in words; for a long window how it begins and how far it goes."""
     if end - start > LONG * motion.scales.time:
         beginning = doing(motion, start, start + 0.5 * LONG * motion.scales.time)
         return f"{beginning}, then {_reach(motion, _samples(motion, start, end))}"
@@ -67,7 +68,7 @@ def _standing(motion: Motion, inside: NDArray[np.intp]) -> str:
 
 
 def _departing(motion: Motion, inside: NDArray[np.intp]) -> str | None:
-    """Words for a movement that begins inside, None where none does."""
+    """Words for a movement that begins inside; None where none begins."""
     begins = inside[0] + np.flatnonzero(motion.moving[inside][1:] & ~motion.moving[inside][:-1]) + 1
     if motion.moving[inside[0]] and motion.time_at_rest[inside[0]] > 0.0:
         begins = np.concatenate([[inside[0]], begins])

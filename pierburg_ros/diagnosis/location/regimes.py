@@ -1,4 +1,4 @@
-"""Where in state space a mismatch is: ranges of angle, velocity, input and times in which it gathers."""
+"""Where in state space a mismatch is: ranges of angle, velocity, input and times in which it is concentrated."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion
 from pierburg_ros.diagnosis.schema import Regime
 
 BINS = 24
-"""Ranges of about equal time into which a variable is cut. Chosen: 4 % of the time each, finer than the `CONTRAST`
-asks for; not varied."""
+"""Number of ranges of about equal time into which a variable is cut. Chosen: 4 % of the time each, finer than
+`CONTRAST` requires; not varied."""
 BLOCK = 5.25
-"""Shortest stretch that stays together when the residual is shuffled, in the actuator's own time; see `block_length`.
-Chosen: half a second for the valve, of which a movement stays whole; not varied."""
+"""Shortest block that stays together when the residual is shuffled, in the actuator's own time; see `block_length`.
+Chosen: half a second for the valve, so that a movement stays whole; not varied."""
 SHUFFLES = 250
-"""Random orders that a range is held against. Derived: the least chance they can show is 1 in 251, well under
-`CHANCE`."""
+"""Number of random orders with which a range is compared. Derived: the smallest chance they can show is 1 in 251, well
+under `CHANCE`."""
 CHANCE = 0.01
 """Largest chance at which a range is reported. Given: the usual 1 %."""
 CONTRAST = 0.15
-"""Smallest difference of share of residual and share of time at which a range is reported. Chosen: less helps nobody
-to look there; not varied."""
+"""Smallest difference between share of residual and share of time at which a range is reported. Chosen: with less, it
+helps nobody to look there; not varied."""
 UNITS = {
     "angle": "rad",
     "velocity": "rad/s",
@@ -37,7 +37,7 @@ UNITS = {
     "time_since_start": "s",
     "stop_distance": "rad",
 }
-"""The variables looked at, with their units."""
+"""The variables that are tested, with their units."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,11 @@ class _Range:
 
 
 def regimes(motion: Motion, residual: Signal, seed: int = 0) -> list[Regime]:
-    """The range of each variable in which `residual` gathers beyond chance, the clearest first.
+    """The range of each variable in which `residual` is concentrated beyond chance, clearest first.
 
-    For each variable the range with the largest difference between its share of the residual's energy and its
-    share of time. Its `chance` is how often the energy, cut into blocks that are put in random order, gathers as
-    much anywhere along the same variable.
+    For each variable it is the range with the largest difference between its share of the residual's energy and its
+    share of time. The energy is also cut into blocks that are put in random order. `chance` is how often it is then
+    concentrated as much anywhere along the same variable.
     """
     own = motion.scales.time
     place = (motion.time / (INSTANT * own)).astype(int)
@@ -75,7 +75,7 @@ def regimes(motion: Motion, residual: Signal, seed: int = 0) -> list[Regime]:
 
 
 def variables(motion: Motion) -> dict[str, Signal]:
-    """Each variable by name, units in `UNITS`, shape (samples,); a stop distance only where there are two stops."""
+    """Each variable by name, units in `UNITS`, shape (samples,); a stop distance only where there is a stop."""
     values = {
         "angle": motion.angle,
         "velocity": motion.velocity,
@@ -89,9 +89,11 @@ def variables(motion: Motion) -> dict[str, Signal]:
 
 
 def block_length(time: Signal, energy: Signal, own: float) -> float:
-    """Length [s] of blocks that keep what belongs together: twice the correlation time of `energy`, at least `BLOCK`.
+    """Length [s] of blocks that keep correlated samples together: twice the correlation time of `energy`, at least
+    `BLOCK`.
 
-    `own` is the actuator's own time [s]. No more than a twentieth of the recording, or too few orders would be left.
+    `own` is the actuator's own time [s]. The length is at most a twentieth of the recording, or too few orders would be
+    left.
     """
     step = 0.1 * BLOCK * own
     grid = np.arange(time[0], time[-1], step)
@@ -104,7 +106,7 @@ def block_length(time: Signal, energy: Signal, own: float) -> float:
 
 
 def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArray[np.intp]:
-    """Sample numbers with blocks of `length` [s] in random order."""
+    """Sample numbers with blocks of `length` [s] in random order, shape (samples,)."""
     block = (time / length).astype(int)
     rank = random.permutation(block[-1] + 1)
     return np.argsort(rank[block], kind="stable")
@@ -113,7 +115,8 @@ def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArr
 def _regime(
     name: str, unit: str, values: Signal, energy: Signal, weight: Signal, orders: Sequence[NDArray[np.intp]]
 ) -> Regime | None:
-    """The range of `values` in which `energy` gathers, None where by chance or not at all; `weight` is time."""
+    """The range of `values` in which `energy` is concentrated; None where it is so by chance or not at all; `weight` is
+    time."""
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
     if edges.size < 3:
         return None
@@ -138,7 +141,7 @@ def _regime(
 
 
 def _gathered(place: NDArray[np.intp], energy: Signal, time: Signal) -> _Range:
-    """The run of bins with the largest share of energy less share of time."""
+    """The run of bins with the largest share of energy minus share of time."""
     share = np.bincount(place, weights=energy, minlength=time.size) / energy.sum()
     before = np.concatenate([[0.0], np.cumsum(share - time)])
     lowest = np.minimum.accumulate(before)

@@ -1,4 +1,4 @@
-"""The windows that hold the most of an energy: few, not too short, and together not too long."""
+"""The windows that hold most of an energy: few, not too short, and together not too long."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
 
 SHORTEST = 2.6
-"""Shortest window that a diagnosis names, in the actuator's own time. Derived: for every shipped actuator more than the
-0.2 s that section 5 of docs/contract.md states."""
+"""Shortest window that a diagnosis names, in the actuator's own time. Derived: for every shipped actuator it is more
+than the 0.2 s that section 5 of docs/contract.md states."""
 MOST_BINS = 600
-"""Steps into which a recording is cut at most; they are half the shortest window, or longer. Work: time and memory grow
-with its square."""
+"""Largest number of bins into which a recording is cut; a bin is half the shortest window, or longer. Work: time and
+memory grow with the square of the number."""
 GRAIN = 1e-7
-"""Share of the energy that differences between windows are told in. Derived: a shaft that stands displaced makes
-windows that hold the same but for rounding, 1e-12, which shall not choose among them."""
+"""Resolution of the energy of windows, as a share of the whole energy. Derived: a shaft that stands displaced makes
+windows of equal energy but for rounding, 1e-12, and rounding must not choose among them."""
 ENOUGH = 0.9
-"""Share of an energy that shorter windows, or fewer, must keep of what longer or more ones hold. Chosen: a tenth is
-not worth a longer window; not varied."""
+"""Share of the energy of longer windows, or more, that shorter ones, or fewer, must keep. Chosen: a tenth is not worth
+a longer window; not varied."""
 
 
 def windows(
     time: Signal, energy: Signal, most: int = 20, shortest: float = 0.2, quarter: float = 0.25
 ) -> list[tuple[float, float]]:
-    """Windows (start, end) [s] that hold the most of `energy`, the one with the most of it first.
+    """Windows (start, end) [s] that hold most of `energy`, the one with most of it first.
 
-    At most `most` windows, each at least `shortest` [s], together at most the share `quarter` of the recording;
-    exact for window ends on a grid of half the shortest. In total they are as long as it takes to hold 90 % of what the
-    longest would. They are shorter where more windows of that length would hold much more.
+    There are at most `most` windows, each at least `shortest` [s], together at most the share `quarter` of the
+    recording. They are exact for window ends on a grid of half the shortest. Their total length is what it takes to
+    hold 90 % of the energy of the longest. It is shorter where more windows of that total length would hold much more.
     """
     duration = float(time[-1] - time[0])
     count = min(MOST_BINS, int(2.0 * duration / shortest))
@@ -51,7 +51,7 @@ def windows(
 
 
 def _useful_length(held: Signal, binned: Signal, least: int) -> int:
-    """How many bins are worth taking; `held` is the energy that the best windows of each total length hold."""
+    """Number of bins that are worth taking; `held` is the energy of the best windows of each total length."""
     blocks = np.add.reduceat(binned, np.arange(0, binned.size, least))
     reachable = np.cumsum(np.sort(blocks)[::-1])
     lengths = np.arange(held.size)
@@ -64,7 +64,7 @@ def _useful_length(held: Signal, binned: Signal, least: int) -> int:
 
 
 class _Plan:
-    """The best windows of every number and total length."""
+    """The best windows for every number and total length."""
 
     def __init__(self, binned: Signal, most: int, longest: int, least: int) -> None:
         self.least = least
@@ -105,8 +105,8 @@ class _Plan:
 def _fill(total: Signal, least: int, outside: Signal, inside: Signal, left: Flags, opened: Flags) -> None:
     """Dynamic programming over bins i, number of windows w and their total length l in bins.
 
-    `outside[i, w, l]` is the largest energy in the first i bins with the last of them left out, `inside` with it
-    taken in; `left` and `opened` say where each came from. `total` is the energy before each bin.
+    `outside[i, w, l]` is the largest energy in the first i bins if the last of them is left out, `inside` if it is
+    taken in. `left` and `opened` record where each came from. `total` is the energy before each bin.
     """
     bins, most, longest = outside.shape[0], outside.shape[1], outside.shape[2]
     for i in range(1, bins):

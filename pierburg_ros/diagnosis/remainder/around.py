@@ -1,4 +1,4 @@
-"""An effect that repeats itself with every turn of a shaft, named by the balance of torques."""
+"""An effect that repeats with every turn of a shaft, named by the balance of torques."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pierburg_ros.plant import Model
 
 @dataclass(frozen=True)
 class _Around:
-    """The strongest order as an effect, fitted beside drifts to a nominal model with the `lesser` orders."""
+    """The strongest order as an effect, fitted with drifts to a nominal model that has the `lesser` orders."""
 
     lesser: Model
     fit: Fit
@@ -32,10 +32,10 @@ class _Around:
 
 
 def goes_around(data: Data, nominal: Model) -> bool:
-    """Whether overtones of a torque over a turn are seen, and samples that validate confirm them.
+    """Whether a torque over a turn has overtones, and validation samples confirm them.
 
-    The torque that nothing makes up has to be smaller by a tenth there. A simulation says less: where a slow rotor
-    begins again and again its beginnings make up for the torque.
+    The unexplained torque must be smaller by a tenth there. A simulation shows less: a slow rotor is simulated in
+    stretches, and their fitted initial states compensate for the torque.
     """
     unseen = replace(data, runs=tuple(run.trained_on(run.validation) for run in data.runs))
     left = left_of_torque(data, unseen, nominal)
@@ -43,12 +43,12 @@ def goes_around(data: Data, nominal: Model) -> bool:
 
 
 def supported_around(data: Data, nominal: Model) -> Supported | None:
-    """The strongest order of a torque over a turn as an effect, beside drifts; None where it does not go around.
+    """The strongest order of a torque over a turn as an effect, beside drifts; None where `goes_around` does not hold.
 
-    None too where the nominal model has such an effect already: what it lacks becomes part of the torque over a turn.
+    None also where the nominal model has such an effect already: what it lacks becomes part of the torque over a turn.
 
-    Chance raises an order so far once in a hundred recordings. Its weight is its share of the mean square of the
-    torque, beside what no order makes up. Without overtones a search finds it as any other effect.
+    By chance an order stands out so far once in a hundred recordings. Its weight is its share of the mean square of the
+    torque, beside the part that no order explains. Without overtones a search finds it like any other effect.
     """
     effect = _over_the_angle(nominal)
     around = _around(data, nominal, effect) if effect and goes_around(data, nominal) else None
@@ -61,9 +61,10 @@ def supported_around(data: Data, nominal: Model) -> Supported | None:
 
 
 def vouched_around(data: Data, nominal: Model) -> LeftOut | None:
-    """What each of several recordings says of that effect when it is told by the others; None unless that is for it.
+    """How much recordings left out support that effect when it is fitted to the others; None where they do not support
+    it.
 
-    The torque that nothing makes up on recordings left out has to fall as far as that on samples that validate.
+    The unexplained torque on recordings left out must fall as far as that on validation samples.
     """
     every = all_training(data)
     names = {run.number: run.name for run in data.runs}
@@ -94,13 +95,13 @@ def _around(data: Data, nominal: Model, effect: Effect) -> _Around | None:
     explanation = Explanation(drifting(nominal), (variant,))
     held = f"{effect.id}.{ripple.rhythm}"
     start = {**nominal.values, **values}
-    # where the shaft is caught in motion errors are large, and say little
+    # where the shaft is caught in motion, errors are large and say little
     fit = Estimator(data, lesser).fit(explanation, start, BRIEF, held=held, forgiving=True)
     return _Around(lesser, fit, variant, found)
 
 
 def _over_the_angle(nominal: Model) -> Effect | None:
-    """The effect that is a sine over the angle, None where `nominal` has it already: it has one order alone."""
+    """The effect that is a sine over the angle; None where `nominal` has it already, since it has one order alone."""
     sines = (each for each in possible(nominal.actuator) if each.ripple is not None and each.turns_within is not None)
     effect = next(sines, None)
     return None if effect is None or effect.acts(nominal.values) else effect

@@ -1,4 +1,4 @@
-"""Whether a residual torque holds where it was not fitted."""
+"""Whether a residual torque holds for data to which it was not fitted."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pierburg_ros.estimation.run import Run
 
 
 def confirmed(shape: Shape, data: Data, pool: Executor) -> bool:
-    """Whether unseen data improve by a tenth with a `shape`: the samples that validate, or recordings left out.
+    """Whether unseen data improve by a tenth with a `shape`: the validation samples, or recordings left out.
 
-    Blocks beside each other share what is peculiar to a recording. Of several, each part is left out once, a shape is
-    fitted to the others, and what counts is the geometric mean of what the parts left out gain.
+    Neighbouring blocks share what is peculiar to a recording. With several recordings, each part is left out once, and
+    a shape is fitted to the others. The geometric mean of the gains on the parts left out counts.
     """
     if not data.several:
         return shape.after < BETTER * shape.before
@@ -27,7 +27,7 @@ def confirmed(shape: Shape, data: Data, pool: Executor) -> bool:
 
 
 def _apart(fitted: Data, left: Data) -> Data:
-    """Whole recordings train or validate."""
+    """All samples of `fitted` for training, and all those of `left` for validation."""
     return replace(fitted, runs=(*(_only(run, True) for run in fitted.runs), *(_only(run, False) for run in left.runs)))
 
 

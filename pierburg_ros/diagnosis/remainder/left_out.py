@@ -1,4 +1,4 @@
-"""The score of what recordings share: what fits to the others leave of the recordings left out, and the prior."""
+"""The score of an effect that recordings share: the error of recordings left out of the fit, and the prior."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from pierburg_ros.estimation.prior import implausible, improbability
 from pierburg_ros.plant import Model
 
 FOLDS = 4
-"""Parts into which the recordings are divided, each left out in turn. Work: every effect looked at is fitted once more
-for each part; not varied."""
+"""Number of parts into which the recordings are divided; each is left out in turn. Work: every effect that is tried is
+fitted once more for each part; not varied."""
 BETTER = 0.9
-"""Share of the error on unseen data to which whatever is said of a remainder must bring it: an effect, an effect with
+"""Largest share of the error on unseen data that anything reported of a remainder may leave: an effect, an effect with
 its overtones, a residual torque. Given: a name only where unseen data improve by a tenth."""
 
 Map = Callable[..., Iterable[Any]]
 Folds = list[tuple[Data, Data]]
-"""Pairs of what is fitted and what is left out."""
+"""Pairs of data that are fitted and data that are left out."""
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What recordings left out of the fit say of an effect.
+    """The evidence for an effect from recordings left out of the fit.
 
-    Their error, the geometric mean of root mean squares, `without` it and `beside` those added before, in how many of
-    the `parts` it `helped`, and the names of the recordings in these. The error is in a `unit`: none is the measured
-    one.
+    Their error is the geometric mean of root mean squares: `without` the effect, and with it `beside` those added
+    before. The effect `helped` in so many of the `parts`, and `recordings` are the names in these. The error is in a
+    `unit`; an empty one is the measured unit.
     """
 
     without: float
@@ -48,9 +48,12 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Parts:
-    """What a fit leaves of each part when it is fitted to the others: RMSE [noise] and independent stretches, shape
-    (parts,); how improbable its values are, in -2 log probability, and whether each value of its effects is one that 95
-    of 100 actuators have."""
+    """What a fit leaves of each part when it is fitted to the others.
+
+    `errors` is the RMSE [noise] and `stretches` the number of independent stretches, shape (parts,). `improbable` is
+    how improbable its values are, in -2 log probability. `plausible`: each value of its effects is one that 95 of 100
+    actuators have.
+    """
 
     errors: Signal
     stretches: Signal
@@ -59,12 +62,12 @@ class Parts:
 
     @property
     def mean(self) -> float:
-        """Geometric mean of the errors: a part whose error is large in any case does not decide alone."""
+        """Geometric mean of the errors, so that a part whose error is large in any case does not decide alone."""
         return float(np.exp(np.mean(np.log(self.errors))))
 
 
 def folds_of(data: Data) -> Folds:
-    """The recordings divided into parts, each left out once."""
+    """The recordings divided into parts; each part is left out once."""
     count = min(FOLDS, data.runs[-1].number + 1)
     pairs = []
     for fold in range(count):
@@ -75,13 +78,14 @@ def folds_of(data: Data) -> Folds:
 
 
 def believing(data: Data, nominal: Model, residual: Signal) -> Estimator:
-    """What counts a residual like this [noise] as its independent stretches, beside what is known of the values."""
+    """An estimator that counts a residual like this [noise] by its independent stretches, with the prior of the
+    values."""
     size = max(rms(residual), 1.0)
     return Estimator(data, nominal, unit=size * math.sqrt(repetition(residual)))
 
 
 def parts_of(nominal: Model, folds: Folds, fit: Fit, over: Map = map) -> Parts:
-    """What a fit leaves of each part, its values fitted again to the others."""
+    """The error of a fit on each part, its values fitted again to the others."""
 
     def left_of(fold: tuple[Data, Data]) -> tuple[float, float]:
         fitted, left = fold
@@ -98,27 +102,29 @@ def parts_of(nominal: Model, folds: Folds, fit: Fit, over: Map = map) -> Parts:
 
 
 def gain(smaller: Parts, larger: Parts) -> float:
-    """What the parts left out and the prior say for the larger explanation, in -2 log likelihood.
+    """The evidence of the parts left out and of the prior for the larger explanation, in -2 log likelihood.
 
-    Each stretch that says something new counts as one sample of a normal variable whose size is not known.
+    Each independent stretch counts as one sample of a normal variable of unknown size.
     """
     told = larger.stretches @ np.log(smaller.errors / larger.errors)
     return float(2.0 * told + smaller.improbable - larger.improbable)
 
 
 def helps(smaller: Parts, larger: Parts, candidates: int) -> bool:
-    """Whether the larger explanation, the best of so many candidates, is believed beside the smaller one."""
+    """Whether the larger explanation, the best of so many candidates, is accepted over the smaller one."""
     return gain(smaller, larger) > by_chance(candidates) and larger.mean < BETTER * smaller.mean
 
 
 def by_chance(candidates: int) -> float:
-    """What the best of so many candidates gains in -2 log likelihood if none of them acts: about the largest of as many
-    squares of normal variables."""
+    """Gain of the best of so many candidates in -2 log likelihood if none of them acts.
+
+    It is about the largest of as many squares of normal variables.
+    """
     return 2.0 * math.log(candidates)
 
 
 def said_of(folds: Folds, before: Parts, after: Parts) -> LeftOut:
-    """What the parts left out said of an effect when it was added."""
+    """The evidence of the parts left out for an effect when it was added."""
     helped = after.errors < before.errors
     told = zip(folds, helped, strict=True)
     recordings = tuple(name for (_, left), helps in told if helps for name in _names(left))

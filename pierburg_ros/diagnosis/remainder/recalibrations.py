@@ -1,4 +1,5 @@
-"""Ways to calibrate a model that lacks physics: what it lacks bends its parameters, each way otherwise."""
+"""Ways to calibrate a model that lacks physics: its parameters adapt to the missing physics, in each way
+differently."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from pierburg_ros.plant import Model
 def recalibrations(nominal: Model, explanation: Explanation) -> list[Way]:
     """`nominal` as it is, and with the parameters of `explanation` fitted in three ways.
 
-    To whole runs; to stretches of them; the same with large errors counting by their logarithm.
+    They are fitted to whole runs, to stretches of them, and to stretches with large errors counting by their logarithm.
     """
 
     def described(_: Data) -> Model:

@@ -1,4 +1,4 @@
-"""What can be said where no explanation accounts for all."""
+"""The results that can be reported where no explanation accounts for all."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from pierburg_ros.workers import workers
 
 @dataclass(frozen=True)
 class Remainder:
-    """The model that the rest stands on, with the intervals of its values by dotted name.
+    """The model below the remainder, with the intervals of its values by dotted name.
 
-    Beside it why each of its effects is believed, as in `Standing`; and the rest as a torque over angle and velocity,
-    None where unseen data do not confirm one.
+    `left_out` and `weights` say why each of its effects is believed, as in `Standing`. `shape` is the rest as a torque
+    over angle and velocity; None where unseen data do not confirm one.
     """
 
     base: Fit
@@ -38,9 +38,9 @@ class Remainder:
 
 
 def unexamined(found: Found, named: Standing | None = None) -> Remainder:
-    """Where there is no time to look at what remains: the model that stands, else that below it, without intervals.
+    """The result without time to examine the remainder: the accepted model, else the one below it, without intervals.
 
-    What bends for the rest has not drifted as long as no interval says so.
+    A parameter that adapts to the rest counts as not drifted as long as no interval shows a drift.
     """
     named = named or Standing(found.estimator)
     base = found.estimator.restated(named.base or _below(found, None))
@@ -49,7 +49,7 @@ def unexamined(found: Found, named: Standing | None = None) -> Remainder:
 
 
 def unnamed(found: Found, jobs: int | None, deadline: Deadline) -> Remainder:
-    """What stands where no effect can be concluded: the model below what remains, with intervals."""
+    """The result where no effect can be concluded: the model below the remainder, with intervals."""
     base = found.estimator.restated(_below(found, None))
     with workers(jobs, deadline) as pool:
         return Remainder(base, estimates(found.estimator, base, pool.map), {}, {}, None)
@@ -62,9 +62,9 @@ def remainder(
     jobs: int | None = None,
     deadline: Deadline | None = None,
 ) -> Remainder:
-    """The shape of what is left by what stands, and the intervals of that.
+    """The shape of the rest beside the accepted model, and the intervals of that model.
 
-    It is fitted as a torque over angle and velocity, and kept where unseen data confirm it.
+    The shape is fitted as a torque over angle and velocity, and kept where unseen data confirm it.
     """
     data = found.data
     with workers(jobs, deadline) as pool:
@@ -80,9 +80,9 @@ def remainder(
 
 
 def certain(named: Standing, pool: Executor) -> tuple[Standing, dict[str, Estimate]]:
-    """What stands without effects that may as well not act, and the intervals of its values by dotted name.
+    """The accepted model without effects that may as well not act, and the intervals of its values by dotted name.
 
-    What a single recording supports may gain by an effect, and yet not tell of any of its strengths that it is not 0.
+    An effect may gain in a single recording, and yet the interval of each of its strengths may contain 0.
     """
     if named.base is None:
         return named, {}
@@ -98,16 +98,17 @@ def certain(named: Standing, pool: Executor) -> tuple[Standing, dict[str, Estima
 
 
 def _acts(variant: Variant, known: Mapping[str, Estimate]) -> bool:
-    """Whether the interval of a strength leaves 0 out, or of none is one known."""
+    """Whether the interval of a strength excludes 0, or no interval is known."""
     names = (f"{variant.effect}.{name}" for name in EFFECT[variant.effect].strength)
     intervals = [known[name] for name in names if name in known]
     return not intervals or any(each.low > 0.0 or each.high < 0.0 for each in intervals)
 
 
 def _below(found: Found, shape: Shape | None) -> Fit:
-    """The model without an effect: what the `shape` that stands was fitted to, else the recalibrated one.
+    """The model without an effect: the one to which an accepted `shape` was fitted, else the recalibrated one.
 
-    The nominal model, where samples that validate do not improve by a tenth: numbers that only bend have not drifted.
+    It is the nominal model where validation samples do not improve by a tenth: parameters that only adapt have not
+    drifted.
     """
     recalibrated, nominal = found.recalibrated, found.fits[Explanation()]
     if shape is None:

@@ -1,4 +1,4 @@
-"""What remains beside a model, in words: with which variable it goes, and how long it lasts."""
+"""The remainder beside a model in words: with which variable it varies, and how long it lasts."""
 
 from __future__ import annotations
 
@@ -16,22 +16,24 @@ from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 
 BINS = 16
-"""Ranges of equal time into which a variable is cut. Chosen: a shape with eight half waves still shows; not varied."""
+"""Number of ranges of equal time into which a variable is cut. Chosen: a shape with eight half waves still shows; not
+varied."""
 BLOCK = 21.0
 """Length of the blocks that are put in random order, in the actuator's own time. Chosen: 2 s for the valve, longer than
-it remembers; not varied."""
+its memory; not varied."""
 ORDERS = 30
-"""Random orders that say what a variable explains by chance. Work: a mean of 30 is known to a fifth of their spread."""
+"""Number of random orders that give what a variable explains by chance. Work: a mean of 30 is known to a fifth of their
+spread."""
 CLEAR = 0.1
-"""Least share of what remains, above chance, that makes a resemblance. Chosen: less helps nobody to look there; not
-varied."""
+"""Smallest share of the remainder, above chance, that makes a resemblance. Chosen: with less, it helps nobody to look
+there; not varied."""
 
 
 def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy) -> str:
     """What a residual of a run (measured unit, shape (samples,)) looks like, in words.
 
-    The variable over whose ranges the mean of the residual varies most, beyond what it does with the residual's blocks
-    in random order.
+    It names the variable over whose ranges the mean of the residual varies most, beyond its variation with the
+    residual's blocks in random order.
     """
     if rms(residual) <= data.noise or structure(residual, math.hypot(data.unlike, data.rounding)) < SIGNIFICANT:
         return "nothing that is told from the noise"
@@ -51,7 +53,7 @@ def resemblance(data: Data, run: Run, residual: Signal, discrepancy: Discrepancy
 
 
 def _variables(motion: Motion, data: Data) -> dict[str, Signal]:
-    """What a remainder may go with, by its name in a sentence, shape (samples,)."""
+    """The variables with which a remainder may vary, by name in a sentence, shape (samples,)."""
     turns = Model.nominal(data.actuator).values.get("gear_ratio", 1.0) * motion.angle / (2.0 * math.pi)
     direction = np.where(motion.moving, motion.direction, 0.0)
     return {
@@ -67,9 +69,9 @@ def _variables(motion: Motion, data: Data) -> dict[str, Signal]:
 
 
 def _beyond_chance(values: Signal, residual: Signal, time: Signal) -> float:
-    """Share of the residual's variance that its means over ranges of a variable hold, less what they hold by chance.
+    """Share of the residual's variance that its means over ranges of a variable hold, minus the share by chance.
 
-    The `time` is the actuator's own.
+    `time` is in units of the actuator's own time.
     """
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)[1:-1]))
     place = np.searchsorted(edges, values, side="right")

@@ -1,4 +1,4 @@
-"""The torque that no catalogue effect explains, as a shape over angle and velocity fitted to the measured signal."""
+"""The torque that no catalogue effect explains: a shape over angle and velocity, fitted to the measured signal."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ from pierburg_ros.estimation.turn import described_turn, with_turn
 from pierburg_ros.plant import Model
 
 ANGLES = 7
-"""Nodes over the angle. Chosen: one for every 15 degrees of the valve; not varied."""
+"""Number of nodes over the angle. Chosen: one for every 15 degrees of the valve; not varied."""
 SPREAD = 0.019
-"""Prior standard deviation of a node, as a share of the stall torque: keeps unvisited nodes small. Chosen: a quarter of
-the sliding friction of the valve; not varied."""
+"""Prior standard deviation of a node, as a share of the stall torque: it keeps unvisited nodes small. Chosen: a quarter
+of the sliding friction of the valve; not varied."""
 STEEPNESS = 0.0075
-"""Prior standard deviation of the difference of neighbouring nodes, as a share of the stall torque: keeps the shape
+"""Prior standard deviation of the difference of neighbouring nodes, as a share of the stall torque: it keeps the shape
 smooth. Chosen: a tenth of the sliding friction of the valve; not varied."""
 APART = 0.02
-"""Least distance of neighbouring nodes of the angle, as a share of the travel. Chosen: an eighth of their distance
+"""Smallest distance of neighbouring nodes of the angle, as a share of the travel. Chosen: an eighth of their distance
 where the travel is visited evenly; not varied."""
 WEIGHT = 5.0
-"""How much more the prior weighs because residuals repeat themselves. Derived: the root of 25 samples that count as
-one."""
+"""Factor on the prior, since successive residuals are correlated. Derived: the root of 25 samples that count as one."""
 STRETCH = 10.5
-"""Length of the stretches that are simulated each from the measured state, in the actuator's own time. Chosen: 1 s for
-the valve, after which a slip at the wrong moment is forgotten; not varied."""
+"""Length of the stretches, each simulated from the measured state, in the actuator's own time. Chosen: 1 s for the
+valve, after which a slip at the wrong moment is forgotten; not varied."""
 STRETCHES = 24
-"""Into how many stretches of time the missing torque is averaged. Chosen: it makes a plot and decides no verdict."""
+"""Number of stretches of time over which the missing torque is averaged. Chosen: it makes a plot and decides no
+verdict."""
 
 
 Way = Callable[[Data], Model]
-"""A way to calibrate the model that the shape stands on, to the training samples."""
+"""A way to calibrate the model below the shape to the training samples."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A model with its residual torque, and what that gains on samples that did not train it.
+    """A model with its residual torque, and its gain on samples that did not train it.
 
-    `base` is the model without it. `before` and `after` are RMSE over whole runs on the validation samples, measured
-    unit, of the base and of the shaped model. `over_time` holds the middle [s] of each stretch of the first
-    recording and the mean torque [N.m] that the base lacks there, not a number at rest.
+    `base` is the model without it. `before` and `after` are the RMSE of the base and of the shaped model over whole
+    runs on the validation samples, measured unit. `over_time` holds the middle [s] of each stretch of the first
+    recording, and the mean torque [N.m] that the base lacks there; nan at rest.
     """
 
     model: Model
@@ -68,9 +68,9 @@ def fit_shape(
 ) -> Shape:
     """The residual torque over angle and velocity that makes a simulation fit the training samples.
 
-    Of several `ways` to calibrate the model below it, the one is taken that does best on training blocks held back from
-    it, with or without a shape. Parameters fitted to whole runs without the missing physics may be wrong for the sake
-    of a few standstills that it has displaced.
+    Several `ways` may calibrate the model below it. The search takes the one with the lowest error, with or without a
+    shape, on training blocks held back from it. Parameters fitted to whole runs without the missing physics may be
+    wrong: they may fit a few standstills that this physics has displaced.
     """
     way = ways[0]
     if len(ways) > 1:
@@ -93,10 +93,10 @@ def fit_shape(
 
 
 def _left_out(data: Data, way: Way) -> float:
-    """Error on training blocks held back, of the model that `way` calibrates or of its shaped one, the lower.
+    """Error on training blocks held back: that of the model that `way` calibrates or of its shaped one, the lower.
 
-    The product of the RMSE over whole runs, where a few standstills at the wrong angle can decide, and over
-    stretches, which do not see what a model forgets slowly.
+    It is the product of the RMSE over whole runs and the RMSE over stretches. In whole runs a few standstills at the
+    wrong angle can decide. Stretches do not show what a model forgets slowly.
     """
     inner = held_back(data)
     length = STRETCH * data.scales.time
@@ -114,9 +114,9 @@ def _left_out(data: Data, way: Way) -> float:
 def _fitted(data: Data, base: Model, over: Map = map) -> Model:
     """`base` with its best shape; `over` maps a function over the columns of a Jacobian.
 
-    It is bilinear between about 7 x 6 nodes. The signal is simulated in short stretches, each from the measured state:
-    a slip at the wrong moment is forgotten after one. Large errors count by their logarithm. A prior keeps the shape
-    small and smooth. A shaft that goes round has one over a turn, read from the balance of torques.
+    The shape is bilinear between about 7 x 6 nodes. The signal is simulated in short stretches, each from the measured
+    state: a slip at the wrong moment is forgotten after one. Large errors count by their logarithm. A prior keeps the
+    shape small and smooth. For a shaft that goes round, the shape is over a turn and read from the balance of torques.
     """
     if (turning := with_turn(data, base.with_residual(None))) is not None:
         return turning
@@ -148,10 +148,10 @@ def _fitted(data: Data, base: Model, over: Map = map) -> Model:
 def nodes(data: Data) -> tuple[Signal, Signal]:
     """Nodes of angle [rad] and velocity [rad/s], placed by how often the data visit them.
 
-    The innermost ones of velocity stand where friction has a known sign: it changes between them.
+    The innermost nodes of velocity are where friction has a known sign: friction changes between them.
     """
     motions = [motion_of(run, data.actuator, data.noise) for run in data.runs]
-    # behind a coarse converter nothing may be known to move
+    # with a coarse converter, no sample may be known to move
     known = any(motion.moving.any() for motion in motions)
     angles = np.concatenate([motion.angle[motion.moving] if known else motion.angle for motion in motions])
     speeds = np.concatenate([motion.velocity[motion.moving] for motion in motions])
@@ -166,7 +166,7 @@ def nodes(data: Data) -> tuple[Signal, Signal]:
 
 
 def _apart(values: Signal, least: float) -> Signal:
-    """Increasing `values` without those closer than `least` to the one kept before."""
+    """Increasing `values` without those closer than `least` to the last one kept."""
     kept = [float(values[0])]
     for value in values[1:]:
         if value - kept[-1] >= least:
@@ -177,7 +177,7 @@ def _apart(values: Signal, least: float) -> Signal:
 def _prior(angles: int, velocities: int) -> Signal:
     """Rows whose product with the nodes is a residual in standard deviations: each node, and neighbours' differences.
 
-    Nodes on either side of velocity 0 are not held together: friction may differ between directions.
+    Nodes on either side of velocity 0 are not coupled: friction may differ between directions.
     """
     size = angles * velocities
     number = np.arange(size).reshape(angles, velocities)
@@ -192,7 +192,7 @@ def _prior(angles: int, velocities: int) -> Signal:
 
 
 def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
-    """Middle of each stretch of the longest run [s] and the mean torque missing there [N.m], nan where at rest."""
+    """Middle [s] of each stretch of the longest run, and the mean torque missing there [N.m]; nan where at rest."""
     run = data.longest
     missing, own = missing_torque(data, run, model), data.scales
     edges = np.linspace(run.time[0], run.time[-1], STRETCHES + 1)
@@ -204,7 +204,7 @@ def _over_time(data: Data, model: Model) -> tuple[Signal, Signal]:
 
 
 def described(angle: Signal, velocity: Signal, torque: Signal, motion: Motion = "rotary") -> str:
-    """The shape in words: where it is strongest either way, and how it depends on angle and direction."""
+    """The shape in words: where it is strongest in either direction, and how it depends on angle and direction."""
     parts = []
     unit, speed, way = (unit_of(declared, motion) for declared in ("N.m", "rad/s", "rad"))
     for sign, verb in ((1.0, "closes"), (-1.0, "opens")):
@@ -225,7 +225,7 @@ def described(angle: Signal, velocity: Signal, torque: Signal, motion: Motion = 
 
 
 def described_over_time(time: Signal, torque: Signal, unit: str = "N.m") -> str:
-    """How the missing torque goes over the recording, in words."""
+    """How the missing torque changes over the recording, in words."""
     known = np.isfinite(torque)
     if np.count_nonzero(known) < 4:
         return "too little movement to say how it goes over time"

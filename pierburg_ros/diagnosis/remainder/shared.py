@@ -1,10 +1,10 @@
 """Physics that several recordings share, where no explanation accounts for all: chosen on recordings left out.
 
-A real actuator lacks more than one thing, and with a low noise floor nothing is ever adequate. An effect is
-then believed if, fitted on the other recordings, it lowers the error on the recordings left out. What remains counts
-by its independent stretches, not by its samples, so that what is known of the values beforehand has its say. The same
-score takes an effect out again once those added after it leave nothing for it to do: it had stood in for them. An
-effect that bends easily stands in with values that no actuator has; then it is not believed, whatever it gains.
+A model of a real actuator lacks more than one effect, and with a low noise floor no explanation is ever adequate. The
+search then accepts an effect if, fitted on the other recordings, it lowers the error on the recordings left out. The
+residual counts by its independent stretches, not by its samples, so that the prior of the values keeps its influence.
+The same score removes an effect again if effects added later make it superfluous: it had replaced them. An effect that
+adapts easily replaces others with values that no actuator has. The search then rejects it, whatever it gains.
 """
 
 from __future__ import annotations
@@ -43,16 +43,19 @@ from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 TRIED = 6
-"""Candidates of each round that are held against recordings left out. Work: each costs as many brief descents as there
-are parts; not varied."""
+"""Candidates of each round that are tested on recordings left out. Work: each costs as many brief descents as there are
+parts; not varied."""
 SETTLING = 3
-"""How often a fit is carried on, each time against what the one before left. Work: each is a whole fit; not varied."""
+"""How often a fit is continued, each time weighted by the residual of the one before. Work: each is a whole fit; not
+varied."""
 
 
 @dataclass(frozen=True)
 class Round:
-    """A fit with the effects that have been added so far, what it leaves of recordings left out, and what these said of
-    each effect when it was added, by id."""
+    """A fit with the effects added so far, and its error on recordings left out.
+
+    `said` is the evidence of these for each effect when it was added, by id.
+    """
 
     fit: Fit
     parts: Parts
@@ -61,7 +64,7 @@ class Round:
 
 @dataclass(frozen=True)
 class Bench:
-    """The recordings, all training, and divided into parts; the model that is added to; who fits."""
+    """The recordings, all training and also divided into parts; the model that is extended; the workers that fit."""
 
     data: Data
     folds: Folds
@@ -69,10 +72,11 @@ class Bench:
     pool: Executor
 
     def settled(self, explanation: Explanation, start: Mapping[str, float]) -> Fit:
-        """The fit carried on until what it leaves is what it is counted against; its residual in noises.
+        """The fit, repeated so that its weights match the residual that it leaves; its residual is in units of the
+        noise.
 
-        Each time to the lowest of the minima near by: values along a valley that recordings hardly tell apart predict
-        others differently.
+        Each time it goes to the lowest local minimum near by. Values along a valley that recordings hardly distinguish
+        predict other recordings differently.
         """
         plain = Estimator(self.data, self.nominal)
         fit = plain.at(explanation, start)
@@ -82,16 +86,16 @@ class Bench:
         return fit
 
     def best(self, explanation: Explanation, starts: Sequence[Mapping[str, float]]) -> Fit:
-        """The settled fit from the best of some starts."""
+        """The best of the settled fits from some starts."""
         return min(self.pool.map(lambda start: self.settled(explanation, start), starts), key=lambda fit: fit.ratio)
 
     def parts(self, fit: Fit) -> Parts:
-        """What a fit leaves of recordings left out."""
+        """The error of a fit on recordings left out."""
         return parts_of(self.nominal, self.folds, fit, self.pool.map)
 
 
 Shared = tuple[Fit, dict[str, LeftOut]]
-"""A fit with effects, and what recordings left out say of each, by id."""
+"""A fit with effects, and the evidence of recordings left out for each, by id."""
 
 
 def shared_effects(
@@ -99,9 +103,9 @@ def shared_effects(
 ) -> Shared:
     """A fit with the effects that each lower the error on recordings left out, added one by one.
 
-    Those that the others make superfluous are taken out again. The parameters that recordings tell apart are fitted
-    beside them, from their nominal values and from the recalibrated ones, as far as what remains speaks against what
-    was known of them. At the `deadline` it is what stood then; OutOfTime where that is nothing.
+    Effects that the others make superfluous are removed again. The parameters that recordings distinguish are fitted
+    beside them, from their nominal and from the recalibrated values. They leave their prior values only as far as the
+    residual requires. At the `deadline` the last round is returned; OutOfTime where there is none.
     """
     rounds: list[Round] = []
     deadline = deadline or Deadline()
@@ -115,7 +119,7 @@ def shared_effects(
 
 
 def _rounds(bench: Bench, found: Found, progress: Progress) -> Iterator[Round]:
-    """The fit without effects, and one more for each that is added; what has been taken out does not come back."""
+    """The fit without effects, and one more for each effect that is added; a removed effect does not come back."""
     last = _first(bench, found)
     yield last
     added = set[str]()
@@ -142,7 +146,7 @@ def _first(bench: Bench, found: Found) -> Round:
 def _with_last(bench: Bench, before: Round, grown: Fit) -> Round:
     """The round in which the last effect of `grown` is added.
 
-    The parameters start from where they are and from their nominal values: they may have bent for want of the effect.
+    The parameters start from their present and from their nominal values: they may have adapted to the missing effect.
     """
     fit = bench.best(grown.explanation, (grown.values, undrifted(grown, bench.nominal)))
     parts = bench.parts(fit)
@@ -151,13 +155,15 @@ def _with_last(bench: Bench, before: Round, grown: Fit) -> Round:
 
 
 def undrifted(fit: Fit, nominal: Model) -> dict[str, float]:
-    """The values of a fit, but nominal ones of all that may drift, of effects that the actuator always has as well."""
+    """The values of a fit, with nominal values for all drifted parameters, also those of effects that the actuator
+    always has."""
     own = fit.explanation
     return {**fit.values, **{name: nominal.values[name] for name in own.drifted}}
 
 
 def thinned(bench: Bench, whole: Round, candidates: int) -> Round:
-    """A round without the effects that no longer help beside those added later, least gain first."""
+    """A round without the effects that no longer help beside those added later; the one with the least gain goes
+    first."""
     earlier = whole.fit.explanation.variants[:-1]
     if not earlier:
         return whole
@@ -173,13 +179,14 @@ def thinned(bench: Bench, whole: Round, candidates: int) -> Round:
 
 
 def _grown(bench: Bench, chosen: Fit, tasks: Sequence[tuple[Explanation, Sequence[Start]]]) -> list[Fit]:
-    """First fits with one more effect, the best of all that may be added."""
+    """First fits with one more effect: the best of all that may be added, best first."""
     seen = bench.pool.map(lambda task: _brief_fit(bench, chosen, task), tasks)
     return sorted((fit for fit in seen if fit), key=lambda fit: fit.chi2)[:TRIED]
 
 
 def _tasks(bench: Bench, found: Found, chosen: Fit) -> list[tuple[Explanation, Sequence[Start]]]:
-    """What may be added, with its starts: effects that belong to one recording's time cannot be shared."""
+    """The explanations with one more effect, and its starts; effects tied to the time of one recording cannot be
+    shared."""
     variants = starts_of(bench.data, chosen.model).items()
     grown = ((chosen.explanation.plus(variant), starts) for variant, starts in variants)
     return [
@@ -190,7 +197,7 @@ def _tasks(bench: Bench, found: Found, chosen: Fit) -> list[tuple[Explanation, S
 
 
 def _brief_fit(bench: Bench, chosen: Fit, task: tuple[Explanation, Sequence[Start]]) -> Fit | None:
-    """The best of the first fits of what may be added, from the starts that a linear step promises most."""
+    """The best of the first fits with one more effect, from the starts for which a linear step promises most."""
     grown, starts = task
     best = promised(Estimator(bench.data, bench.nominal), chosen, grown.variants[-1], starts)[:STARTS_TRIED]
     counting = believing(bench.data, bench.nominal, chosen.solution.residual)

@@ -1,4 +1,4 @@
-"""What can be named although something remains: by what recordings left out, or unseen samples of a single one, say."""
+"""The effects that can be named beside a remainder: by recordings left out, or by unseen samples of a single one."""
 
 from __future__ import annotations
 
@@ -26,20 +26,19 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
 ADDING = 0.6
-"""Share of the time that is left in which effects are added that several recordings share, or quantities that a single
-one supports. Work: the rest is for what could stand in their place, for intervals and for the shape of what remains;
-not varied."""
+"""Share of the time left for adding effects that several recordings share, or quantities that a single one supports.
+Work: the rest is for what could replace them, for intervals and for the shape of the remainder; not varied."""
 WEIGHED = 1.0 / 3.0
-"""Share of the time left then in which what the search has found together is weighed. Work: an explanation of nine
-quantities took all of it (n = 1), and what samples had confirmed went unsaid; not varied."""
+"""Share of the time left then for weighing what the search has found together. Work: an explanation of nine quantities
+took all of it (n = 1), and what samples had confirmed was not reported; not varied."""
 
 
 @dataclass(frozen=True)
 class Standing:
-    """The model `base` that stands although something remains, None where no quantity does; `estimator` has fitted it.
+    """The model `base` that is accepted beside a remainder, None where no quantity is; `estimator` has fitted it.
 
-    Beside it why each of its effects is believed, by id: by what recordings left out say, or by its weight beside what
-    remains. `told` are values that need no fit, with their intervals, by dotted name.
+    `left_out` and `weights` say why each of its effects is believed, by id: the evidence of recordings left out, or its
+    weight beside the remainder. `told` are values that need no fit, with their intervals, by dotted name.
     """
 
     estimator: Estimator
@@ -56,12 +55,12 @@ def standing(
     deadline: Deadline | None = None,
     recording: Recording | None = None,
 ) -> Standing:
-    """What stands beyond one explanation of all.
+    """The model that is accepted where no explanation accounts for all.
 
-    What repeats itself with every turn comes first; where the nominal model has such an effect, and lacks overtones, no
-    other is told beside them. Else several recordings vouch for effects that each lower the error on recordings left
-    out, a single one for quantities that unseen samples confirm when the evidence is counted against what remains.
-    What a controller vouches for in a single `recording` is named as well.
+    An effect that repeats with every turn comes first. If the nominal model has such an effect and lacks overtones, no
+    other is searched in a single recording. Otherwise several recordings support effects that each lower the error on
+    recordings left out. A single one supports quantities that unseen samples confirm when the evidence is weighed
+    against the remainder. An effect that a controller shows in a single `recording` is named as well.
     """
     data, estimator = found.data, found.estimator
     deadline = deadline or Deadline()
@@ -85,9 +84,9 @@ def standing(
 
 
 def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Supported | None:
-    """What unseen samples of a single recording confirm and nothing simpler stands for, and the play of its sensor.
+    """What unseen samples of a single recording confirm and nothing simpler can replace, and the play of its sensor.
 
-    A play is read from the samples themselves: it needs none of the others.
+    A play is read from the samples themselves: it needs none of the other quantities.
     """
     data, nominal = found.data, found.nominal
     nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
@@ -106,10 +105,11 @@ def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadlin
 
 
 def _outdone(stood: Supported, found: Found) -> bool:
-    """Whether parameters alone are told, and samples that validate speak for fewer of them, or for more.
+    """Whether only parameters are reported, and validation samples support fewer of them, or more.
 
-    Beside a discrepancy that explains all, numbers that the recording refutes are likely too. Each of the nominal
-    model, what is told, and all parameters re-estimated stands where it lowers the error there by a tenth.
+    Beside a discrepancy that explains all, values that the recording refutes are likely too. Three models are compared:
+    the nominal one, the reported one, and the one with all parameters re-estimated. Each must lower the validation
+    error of the one before by a tenth.
     """
     fit = stood.scored.fit
     if fit.explanation.variants or not fit.explanation.size:
@@ -120,11 +120,11 @@ def _outdone(stood: Supported, found: Found) -> bool:
 
 
 def _doubtful(stood: Supported, found: Found) -> bool:
-    """Whether the recalibrated model hardly gains by the effects where a simulation begins again and again.
+    """Whether the effects hardly improve on the recalibrated model in a simulation in stretches.
 
-    An error there is no bad luck, and has to fall by a tenth on samples that validate: with the effects alone, or with
-    them beside all that was recalibrated. What was read from the samples themselves, without a free number, stands on
-    no simulation.
+    An error there is not due to chance. It must fall by a tenth on validation samples: with the effects alone, or with
+    them beside all recalibrated parameters. An effect without a free number is read from the samples themselves, and
+    depends on no simulation.
     """
     if not (stood.scored.fit.explanation.names and found.data.in_stretches):
         return False
@@ -138,12 +138,12 @@ def _doubtful(stood: Supported, found: Found) -> bool:
 
 
 def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Supported | None:
-    """What stands, and what the controller that made the input has `told`.
+    """The accepted model, with the effect that the controller has `told` by its input.
 
-    Of the sensor's play it is a second witness beside the recorded angle, and no simulation has a say. What it tells of
-    the input the motion may not speak against. For a lag it has to speak: the derivative of a controller does the same
-    to the rule. Parameters that bend for what is told are fitted beside it anew, where that lowers the error on samples
-    that validate by a tenth.
+    For the sensor's play the controller is a second witness beside the recorded angle, and no simulation is consulted.
+    The motion must not contradict an effect on the input. It must support a lag: the derivative part of a controller
+    changes the rule in the same way. Parameters that adapted to the missing effect are fitted again beside it, if that
+    lowers the error on validation samples by a tenth.
     """
     data, nominal = found.data, found.nominal
     before = stood or Supported(nominal, scored(data, found.estimator.at(Explanation())), {})

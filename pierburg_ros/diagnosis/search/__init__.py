@@ -1,1 +1,1 @@
-"""Which explanations there are, and how well each fits."""
+"""The search: which explanations are possible, and how well each of them fits."""

@@ -21,19 +21,19 @@ from pierburg_ros.estimation.refinement import NEARLY, refined
 from pierburg_ros.plant import Model
 
 FIRST_PART = 2 * CYCLE * BLOCK
-"""How much of a recording a first fit takes in, in the actuator's own time. Derived: two cycles of eight blocks, so
-that every kind of block is there twice."""
+"""Length of the part of a recording that a first fit uses, in the actuator's own time. Derived: two cycles of eight
+blocks, so that every kind of block occurs twice."""
 LEADING = 0.25
-"""Share of the squared error beyond the noise that one more quantity leaves at most for its explanation to be refined,
-or grown before others of its size are tried. Measured: ripples that are there left 0.005 or less before they were
-refined (n = 7 fits), static friction beside a drift 0.17 (n = 1), two third quantities 0.02 and 0.12; all 16
-refinements in n = 4 recordings that nothing explains began at 0.27 or more, took 10 to 60 s of each, and none took a
-tenth of its error away."""
+"""Largest share of the squared error beyond the noise that one more quantity may leave. Up to this share, its
+explanation may be refined, or grown before others of its size are tried. Measured: ripples that are there left 0.005 or
+less before they were refined (n = 7 fits). Static friction with a drift left 0.17 (n = 1), two third quantities 0.02
+and 0.12. In n = 4 recordings that nothing explains, all 16 refinements began at 0.27 or more. They took 10 to 60 s of
+each recording, and none removed a tenth of its error."""
 REFINED = 2
-"""How many fits of one size are refined in one go. Work: each costs up to 18 descents; not varied."""
+"""Number of fits of one size that are refined in one go. Work: each costs up to 18 descents; not varied."""
 COMPARABLE = 1.5
-"""Training error over that of the best explanation of its size up to which a fit is refined. Work: each refinement
-costs up to 18 descents; not varied."""
+"""Ratio of a fit's training error to that of the best fit of its size, up to which the fit is refined. Work: each
+refinement costs up to 18 descents; not varied."""
 
 
 class Attempts:
@@ -56,11 +56,11 @@ class Attempts:
 
     @property
     def exhausted(self) -> bool:
-        """Whether the budget is spent."""
+        """Whether the budget of candidates is spent."""
         return self.tried >= self.beam.budget
 
     def add(self, explanation: Explanation, start: dict[str, float] | None = None) -> Fit:
-        """Fit an explanation and keep it if it is the best of its kind so far."""
+        """Fit an explanation; gives the best fit of this explanation so far, which is kept."""
         self.progress(explanation.label)
         return self.keep(self.whole.fit(explanation, start))
 
@@ -72,23 +72,23 @@ class Attempts:
         return self.fits[fit.explanation]
 
     def of_size(self, size: int) -> list[Fit]:
-        """The fits of explanations of `size` quantities, the best first."""
+        """The fits of explanations with `size` quantities, the best first."""
         fits = (fit for fit in list(self.fits.values()) if fit.explanation.size == size)
         return sorted(fits, key=lambda fit: fit.chi2)
 
     def best_of_size(self, size: int) -> Fit | None:
-        """The best fit among explanations of `size` quantities, None where none was tried."""
+        """The best fit among explanations with `size` quantities, None if none was tried."""
         return next(iter(self.of_size(size)), None)
 
     def completed(self, size: int) -> bool:
-        """Whether an explanation of a size leaves nothing to look for among its like."""
+        """Whether the best explanation of a `size` is adequate, so that no others of that size are needed."""
         best = self.best_of_size(size)
         return best is not None and adequate(best)
 
     def preferred(self, largest: int | None = None) -> Fit:
-        """The smallest explanation that none up to the `largest` size betters; of equals, that with least effects.
+        """The smallest explanation that none up to the `largest` size betters; of ties, that with the fewest effects.
 
-        Without a largest size what has more quantities than the beam is deep counts where it accounts for all.
+        Without a largest size, explanations with more quantities than the beam's depth count if they are adequate.
         """
         best = self.best_of_size(0)
         assert best is not None
@@ -101,18 +101,18 @@ class Attempts:
         return min(tied(best, self.of_size(best.explanation.size), self.whole), key=_preference)
 
     def least_drifted(self, but: Explanation | None = None) -> Fit:
-        """What leaves least so far where parameters drift, if any, and nothing else; one explanation does not count."""
+        """The best fit so far with drifts only, or nominal; the explanation `but` does not count, unless nominal."""
         own = (fit.explanation for fit in list(self.fits.values()))
         drifted = (each for each in own if not each.variants and not each.changed and (each != but or not each.size))
         return min((self.fits[each] for each in drifted), key=lambda fit: fit.chi2)
 
     def nearest(self) -> Fit:
-        """What leaves least so far, of what is added one by one."""
+        """The fit with the lowest chi2 so far, among explanations within the beam's depth."""
         fits = (fit for fit in list(self.fits.values()) if fit.explanation.size <= self.beam.depth)
         return min(fits, key=lambda fit: fit.chi2)
 
     def expand(self, seed: Fit) -> list[Fit]:
-        """Fit every explanation that has one quantity more than `seed`, once; gives the whole fits made."""
+        """Race the explanations with one quantity more than `seed`, once for each seed; gives the full fits made."""
         if seed.explanation in self.expanded:
             return []
         self.expanded.add(seed.explanation)
@@ -123,19 +123,20 @@ class Attempts:
         return self.race(candidates)
 
     def screened(self, seed: Fit) -> list[Candidate]:
-        """What has not been fitted yet of all that may be added to `seed`."""
+        """The candidates with one quantity more than `seed` that have not been fitted yet."""
         found = screened(seed, self.whole, self.first_part, self.drifts, self.pool, self.progress)
         return [candidate for candidate in found if candidate.explanation not in self.fits]
 
     def fit_most_promising(self, seeds: Sequence[Fit]) -> None:
-        """Fit what linear steps promise most on any of the `seeds`: often one of them accounts for all."""
+        """Race the candidates on the `seeds` for which a linear step promises most: often one of them is adequate."""
         candidates = [candidate for seed in seeds for candidate in self.screened(seed)]
         self.race(most_promising(candidates, self.beam.ahead), most=self.beam.ahead // 3)
 
     def race(self, candidates: Sequence[Candidate], most: int | None = None) -> list[Fit]:
-        """Whole fits of the candidates that come out ahead.
+        """Full fits of the candidates that win the race.
 
-        One that had accounted for the samples it raced on, and not for all, has stopped in a local minimum since.
+        A candidate may be adequate on the samples of the race, but not as a full fit. If its cost has many local
+        minima, it has stopped in one of them since, and is refined.
         """
         if not candidates:
             return []
@@ -154,9 +155,9 @@ class Attempts:
         return [self.fits[fit.explanation] for fit in fits]
 
     def refine_leading(self, size: int) -> None:
-        """Refine what leads among explanations of a `size`.
+        """Refine the best fits of a `size`, if the leading one is adequate or leaves far less than every smaller one.
 
-        Not where it leaves nearly as much as something smaller: then it is not the truth that stopped early.
+        A leading explanation that leaves nearly as much as a smaller one is not a true one that stopped early.
         """
         leading = self.best_of_size(size)
         fits = (fit for fit in list(self.fits.values()) if fit.explanation.size < size)
@@ -165,7 +166,7 @@ class Attempts:
             self.refine(self.of_size(size))
 
     def refine(self, fits: Iterable[Fit]) -> None:
-        """Search other local minima of the fits of one size that may gain by it, once each."""
+        """Search for other local minima of those `fits` of one size that may gain by it, once for each fit."""
         fits = list(fits)
         best = self.best_of_size(fits[0].explanation.size) if fits else None
         if best is None:
@@ -180,7 +181,7 @@ class Attempts:
             list(self.pool.map(partial(self._refine, self.whole), chosen))
 
     def refine_alone(self, fit: Fit) -> None:
-        """Search other local minima of one fit, on all cores."""
+        """Search for other local minima of one fit, on all cores."""
         if not fit.refined:
             self._refine(self.alone, fit)
 
@@ -190,16 +191,16 @@ class Attempts:
 
 
 def far_below(fit: Fit, smaller: Fit) -> bool:
-    """Whether a fit leaves far less beyond the noise than a smaller one: it may be the truth that stopped early."""
+    """Whether a fit leaves far less beyond the noise than a smaller one: it may be true and have stopped early."""
     return fit.ratio**2 - 1.0 < LEADING * (smaller.ratio**2 - 1.0)
 
 
 def near(fit: Fit, best: Fit) -> bool:
-    """Whether events jump in a fit, and it comes near the best without being its equal."""
+    """Whether a fit with many local minima has almost the error of the best, without being tied with it."""
     return jumps(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.misfit
 
 
 def _preference(fit: Fit) -> tuple[int, bool, int, float]:
-    """Order among explanations that fit alike: least effects, a drift before a change, least numbers, then by fit."""
+    """Sort key for ties: fewest effects, a drift before a change, fewest numbers, then lowest chi2."""
     explanation = fit.explanation
     return len(explanation.variants), explanation.changed is not None, len(explanation.names), fit.chi2

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 class Beam:
     """How wide, how deep and how long a search goes.
 
-    Up to `width` explanations of one size are grown further, besides every single drift, and explanations have up to
-    `depth` quantities, unless all that may drift does. Of all additions to them, the `ahead` most promising are fitted
-    before the others. Once `budget` candidates have been fitted, explanations no longer grow. Where these leave
-    something, and so does what is likeliest beside a remainder, a search that `resigns` fits no others, or not for long
-    where little is left.
+    The search grows up to `width` explanations of one size, and every single drift. An explanation has up to `depth`
+    quantities, except where all parameters drift together. The `ahead` most promising of all additions are fitted
+    before the others. Once `budget` candidates have been fitted, explanations no longer grow. A search that `resigns`
+    fits no others if neither the most promising additions nor the most likely explanation beside a remainder is
+    adequate. Where little is left, it goes on for a short time.
     """
 
     width: int = 3

@@ -1,4 +1,4 @@
-"""What could be the case: which parameters may drift, how an effect may act, and where a search for it starts."""
+"""What is possible: which parameters may drift, how an effect may act, and where a search for it starts."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from pierburg_ros.estimation.explanation import Explanation, Variant, canonical
 from pierburg_ros.plant import Model
 
 Addition = str | Variant
-"""What an explanation grows by: a parameter (drifted or changed), or an effect."""
+"""The quantity by which an explanation grows: a parameter (drifted or changed), or an effect."""
 
 
 def drifting(nominal: Model) -> tuple[str, ...]:
-    """Names of what may drift: the free base parameters, and the parameters of effects the actuator always has."""
+    """Names of the parameters that may drift: free base parameters, and those of effects the actuator always has."""
     own = tuple(f"{effect}.{name}" for effect, values in nominal.actuator.effects.items() for name in values)
     return nominal.actuator.free + own
 
 
 def possible(actuator: Actuator) -> tuple[Effect, ...]:
-    """The effects that can act in an actuator and are searched for."""
+    """The effects that can act in an actuator and that the search looks for."""
     return tuple(effect for effect in EFFECTS if effect.variants and not actuator.obstacle(effect))
 
 
 def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
-    """Starting values by variant on top of `model`: some are read from the torque that it misses."""
+    """Starting values by variant, to be added to `model`; some are read from the torque that `model` lacks."""
     missing = missing_torque(data, data.longest, model)
     found: dict[Variant, list[Start]] = {}
     for effect in possible(data.actuator):
@@ -44,12 +44,12 @@ def starts_of(data: Data, model: Model) -> dict[Variant, list[Start]]:
 
 
 def may_change(explanation: Explanation, data: Data) -> bool:
-    """Whether a change in the middle is looked for beside an explanation: beside drifts, and in single recordings."""
+    """Whether a change in mid-recording may be added to an explanation: only without effects and in a single run."""
     return not explanation.variants and explanation.changed is None and len(data.runs) == 1
 
 
 def with_drifts(explanation: Explanation, drifts: tuple[str, ...], count: int) -> Iterator[Explanation]:
-    """An explanation with so many more parameters that drift, each combination of those that do not yet."""
+    """The explanation with `count` more drifting parameters, for each combination of those that do not drift yet."""
     free = [name for name in drifts if name not in explanation.drifted and name != explanation.changed]
     for others in itertools.combinations(free, count):
         key = canonical(Explanation((*explanation.drifted, *others), explanation.variants, explanation.changed), drifts)
@@ -58,7 +58,7 @@ def with_drifts(explanation: Explanation, drifts: tuple[str, ...], count: int) -
 
 
 def expansions(base: Fit, data: Data, drifts: tuple[str, ...]) -> dict[Explanation, tuple[Addition, list[Start]]]:
-    """Every explanation with one quantity more than that of `base`: what is added, and where its search may start."""
+    """Every explanation with one quantity more than `base`: the addition, and where its search may start."""
     seed = base.explanation
     additions: list[tuple[Explanation, Addition, list[Start]]] = []
     for name in drifts:

@@ -1,4 +1,4 @@
-"""What a search has found: the chosen explanation with its last values, and the fits that it is held against."""
+"""The result of a search: the chosen explanation with its final values, and the fits that it is compared with."""
 
 from __future__ import annotations
 
@@ -26,18 +26,19 @@ from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 GROWING = 0.7
-"""Share of the time that the search may take; the rest is for last values, what remains, and limits. Chosen: without a
-limit these took 5 to 40 % of it; not varied."""
+"""Share of the time that the search may take; the rest is for final values, the remainder, and limits. Chosen: without
+a time limit these took 5 to 40 % of the time; not varied."""
 
 
 @dataclass(frozen=True)
 class Found:
     """All explanations tried, each with its best fit, and what the choice among them needs.
 
-    `chosen` is the preferred one, `final` the same with its last values and `estimates` their intervals, by dotted
-    name; `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`: the search ended
-    because its budget of candidates was spent. `beside` is what the recordings say counted against what remains, None
-    where it has not come to that. `needless` are effects that would account for all, and are not needed.
+    `chosen` is the preferred fit. `final` is the same explanation with its final values, and `estimates` are their
+    intervals, by dotted name. `recalibrated` is the nominal structure with its parameters fitted again. `exhausted`:
+    the search ended because its budget of candidates was spent. `beside` is what the recordings support beside a
+    remainder, None if the search did not get that far. `needless` are effects of an adequate explanation that are not
+    needed.
     """
 
     data: Data
@@ -53,12 +54,12 @@ class Found:
     needless: tuple[str, ...] = ()
 
     def of_size(self, size: int) -> list[Fit]:
-        """The fits of explanations of `size` quantities."""
+        """The fits of explanations with `size` quantities."""
         return [fit for fit in self.fits.values() if fit.explanation.size == size]
 
     @property
     def estimator(self) -> Estimator:
-        """Fits to the training samples."""
+        """The estimator that fits to the training samples."""
         return Estimator(self.data, self.nominal)
 
 
@@ -70,11 +71,11 @@ def search(
     beam: Beam | None = None,
     deadline: Deadline | None = None,
 ) -> Found:
-    """Search what `nominal` lacks in `data`, `jobs` fits at a time.
+    """Search for what `nominal` lacks in `data`, with `jobs` fits at a time.
 
-    Where an effect shows only in samples that validate, the search is made again with these training as well. At the
-    `deadline`, or after Ctrl-C, what has been found by then is taken; without one all is tried, however little it
-    promises.
+    If an effect shows only in the validation samples, the search is repeated with these as training samples too. At the
+    `deadline`, or after Ctrl-C, the result is what has been found by then. Without a deadline everything is tried,
+    however little it promises.
     """
     deadline = deadline or Deadline()
     beam = beam or Beam(resigns=not math.isinf(deadline.left))
@@ -89,7 +90,7 @@ def search(
             found.add(Explanation())
         again = recalibrated(found, pool)
         if adequate(again):
-            # a search that was stopped may not have come to it
+            # a search that was stopped may not have tried it
             found.keep(again)
         preferred = found.preferred()
         chosen = needed(preferred, found, pool)
@@ -118,7 +119,7 @@ def _grown(
     deadline: Deadline,
     begun: list[Search],
 ) -> Search:
-    """The search with its rivals fitted; each search is added to those `begun` at once, for who cannot wait."""
+    """The search with its rivals fitted; each search is added to `begun` at its start, for an interrupted caller."""
     with suppress(Resigned), workers(jobs, deadline) as pool:
         begun.append(Search(data, nominal, pool, progress, beam))
         if overlooks(begun[-1].run(), begun[-1].whole):
@@ -131,7 +132,7 @@ def _grown(
 
 
 def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) -> Progress:
-    """`progress` that ends with the time, and says how far the last search `begun` is."""
+    """`progress` that ends with the deadline or the search, and reports how far the last search in `begun` is."""
     done = 0
 
     def tell(what: str) -> None:
@@ -150,17 +151,17 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
 
 
 def settled_on(found: Found, fit: Fit, jobs: int | None, deadline: Deadline) -> Found:
-    """`found` with a `fit` that accounts for all chosen in the end, with last values where time is left for them."""
+    """`found` with an adequate `fit` as the final choice, and with its final values if there is time for them."""
     chosen = replace(found, fits={**found.fits, fit.explanation: fit}, chosen=fit)
     final, known = deadline.attempt(lambda: _last_values(chosen, jobs, deadline), (fit, dict[str, Estimate]()))
     return replace(chosen, final=final, estimates=known)
 
 
 def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fit, dict[str, Estimate]]:
-    """The chosen explanation fitted to all samples but those that test, and its intervals.
+    """The chosen explanation fitted to all samples but the test samples, and its intervals.
 
-    Where events jump, minima near by are searched, unless the search has looked further: a fit may reach the noise in
-    one that is not the lowest. Far away there is none that is lower by more than chance.
+    If the cost has many local minima, nearby ones are searched, unless the search has looked further already. A fit may
+    reach the noise in a local minimum that is not the lowest. No distant minimum is lower by more than chance.
     """
     chosen = found.chosen
     with workers(jobs, deadline) as pool:
@@ -168,5 +169,5 @@ def _last_values(found: Found, jobs: int | None, deadline: Deadline) -> tuple[Fi
         fit = estimator.fit(chosen.explanation, chosen.values)
         if jumps(fit.explanation) and not chosen.refined:
             fit = lowered(estimator, fit)
-        # its fits are spread over the cores, not the columns of each
+        # the fits run in parallel, not the columns of each Jacobian
         return lowest_with_estimates(Estimator(estimator.data, found.nominal), fit, pool.map)

@@ -1,4 +1,4 @@
-"""Larger explanations, counted against what remains."""
+"""Larger explanations, scored with the remainder as a part of the likelihood."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 FOLLOWED = 5
-"""Additions of each round and way that are fitted, of those that a linear step promises most. Work: each costs a brief
-descent and a search for the discrepancy; in a trial beside a remainder the true effect promised fourth most."""
+"""Number of additions that are fitted for each round and way, those for which a linear step promises most. Work: each
+costs a brief descent and a search for the discrepancy; in a trial with a remainder, the true effect promised fourth
+most."""
 SETTLED = 3
-"""How many additions of each round are fitted again, each with its own discrepancy, of those that are likeliest as they
-are. Work: each costs a brief descent and a search for the discrepancy; not varied."""
+"""Number of additions that are fitted again in each round, each with its own discrepancy, those that are most likely
+before that. Work: each costs a brief descent and a search for the discrepancy; not varied."""
 
 
 @dataclass(frozen=True)
 class _Promise:
-    """An explanation to be fitted from a start, by the chi2 that a linear step promises."""
+    """An explanation to be fitted from a start, with the chi2 that a linear step promises."""
 
     chi2: float
     explanation: Explanation
@@ -39,16 +40,16 @@ class _Promise:
 
 
 def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
-    """The likeliest explanations with one quantity more than `base`, the best first.
+    """The most likely explanations with one quantity more than `base`, the best first.
 
-    They are looked for in two ways. Beside a discrepancy as large as all that is missing nothing seems to be missing,
-    and a descent hardly moves. By the squared error alone it goes far, but bends to whatever remains. All that is found
-    is fitted with its own discrepancy, and the likeliest counts.
+    They are searched in two ways. With a discrepancy as large as the whole error, nothing seems to be missing, and a
+    descent hardly moves. With the squared error alone, a descent goes far, but adapts to any remainder. The most likely
+    results of both ways are fitted again with their own discrepancy, and the likelihood decides.
     """
     beside, alone = estimator_beside(data, nominal, base.discrepancy), Estimator(data, nominal)
     own, values = base.fit.explanation, base.fit.values
     ways = [_Way(beside, beside.restated(base.fit), progress), _Way(alone, alone.fit(own, values, BRIEF), progress)]
-    # each step of both is handed out at once, so that no core waits for the other way
+    # the steps of both ways are handed out together, so that no core waits
     promises = [pool.map(way.promise, way.tasks) for way in ways]
     followed = [(way, one) for way, each in zip(ways, promises, strict=True) for one in _lowest(filter(None, each))]
     fitted = pool.map(lambda one: (one[0], one[0].fitted(one[1])), followed)
@@ -62,9 +63,9 @@ def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Pr
 
 
 def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Progress) -> list[Scored]:
-    """The likeliest explanations with two more drifting parameters than `base`, the best first.
+    """The most likely explanations with two more drifting parameters than `base`, the best first.
 
-    What a linear step promises of two at once says little: all pairs are fitted.
+    A linear step says little about two parameters at once, so all pairs are fitted.
     """
     estimator, own = Estimator(data, nominal), base.fit.explanation
     progress(f"{own.label}, beside two drifts")
@@ -74,13 +75,13 @@ def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: 
 
 
 def _likeliest(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
-    """Fits of plausible values, each with its own discrepancy, the best first."""
+    """Those `fits` that have plausible values, each with its own discrepancy, the best first."""
     return sorted(plausible(fits, data, nominal, pool), key=lambda each: each.cost)
 
 
 @dataclass(frozen=True)
 class _Way:
-    """One way to look for explanations with one quantity more than `base`: as an `estimator` counts."""
+    """One way to search for explanations with one quantity more than `base`: with the cost of an `estimator`."""
 
     estimator: Estimator
     base: Fit
@@ -88,21 +89,21 @@ class _Way:
 
     @cached_property
     def drifts(self) -> tuple[str, ...]:
-        """Names of what may drift."""
+        """Names of the parameters that may drift."""
         return drifting(self.estimator.nominal)
 
     @cached_property
     def starts(self) -> dict[Variant, list[Start]]:
-        """What effects may be added, each with its starts."""
+        """The effects that may be added, each with its starts."""
         return starts_of(self.estimator.data, self.base.model)
 
     @property
     def tasks(self) -> list[tuple[Addition, list[Start]]]:
-        """All that may be added."""
+        """All possible additions, each with its starts."""
         return [*((name, []) for name in self.drifts), *self.starts.items()]
 
     def promise(self, task: tuple[Addition, list[Start]]) -> _Promise | None:
-        """What one linear step along an addition promises; None where it cannot be added."""
+        """What one linear step along an addition promises; None if it cannot be added."""
         addition, starts = task
         fit, own = self.base, self.base.explanation
         larger = (
@@ -117,12 +118,12 @@ class _Way:
         return _Promise(ways[0][0], explanation, {**fit.values, **ways[0][1]}) if ways else None
 
     def fitted(self, promise: _Promise) -> Fit:
-        """The brief fit that was promised."""
+        """The brief fit from the start of a promise."""
         self.progress(f"{promise.explanation.label}, beside what remains")
         return self.estimator.fit(promise.explanation, promise.start, BRIEF)
 
     def begun_anew(self, fit: Fit) -> Fit:
-        """`fit`, or a better one with an effect of the base begun anew."""
+        """`fit`, or a better one in which an effect of `base` begins from new starts."""
         return anew(
             self.estimator, fit, {one: self.starts[one] for one in self.base.explanation.variants if one in self.starts}
         )
@@ -132,14 +133,15 @@ _Counted = TypeVar("_Counted", Fit, _Promise)
 
 
 def _lowest(found: Iterable[_Counted]) -> list[_Counted]:
-    """Those that are followed, for they leave least."""
+    """The `FOLLOWED` ones with the lowest chi2."""
     return sorted(found, key=lambda each: each.chi2)[:FOLLOWED]
 
 
 def anew(estimator: Estimator, fit: Fit, starts: Mapping[Variant, list[Start]]) -> Fit:
-    """`fit`, or a better one with one of its effects whose events jump begun anew beside the others, from its `starts`.
+    """`fit`, or a better one in which one effect with many local minima begins anew from its `starts`.
 
-    Such an effect was fitted in the place of what has been added since, and may lie in another local minimum by now.
+    Such an effect was fitted before the last quantity was added, and made up for its absence. It may lie in another
+    local minimum by now.
     """
     best = fit
     for variant, own in starts.items():

@@ -1,4 +1,4 @@
-"""What one linear step from a fit promises: for an effect added to it, a drift, a change in the middle."""
+"""What one linear step from a fit promises: for an added effect, a drift, or a change in mid-recording."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
 REDATED = np.arange(-42.0, 43.0, 2.625)
-"""Where around its first estimate the moment of a change is looked for again, in the actuator's own time. Work: 33
-simulations; a quarter of a second apart for the valve, which a descent bridges."""
+"""Offsets from the first estimate of the time of a change at which that time is searched again, in the actuator's own
+time. Work: 33 simulations; for the valve they are a quarter of a second apart, which a descent bridges."""
 LEVEL = 1e-6
-"""Difference in cost, as a share of it, within which two moments are on one step. Derived: a moment that does not count
-changes the cost by rounding alone, below 1e-12."""
+"""Relative difference in cost within which two times of a change lie on one step of the cost. Derived: a time that does
+not matter changes the cost by rounding alone, below 1e-12."""
 
 
 def promised(
     estimator: Estimator, base: Fit, variant: Variant, starts: Sequence[Start]
 ) -> list[tuple[float, dict[str, float]]]:
-    """Starts by the chi2 that a linear step from `base` along them promises, best first.
+    """Pairs of promised chi2 and start, for a linear step from `base` along each of the `starts`, best first.
 
-    Each start is simulated once on top of `base`. What a re-fit of the base can change is projected out. Two starts
-    that differ in phase alone count as one with a free phase.
+    Each start is simulated once on top of `base`. The changes that a re-fit of `base` can make are projected out. Two
+    starts that differ only in phase count as one with a free phase.
     """
     projected = projection(base)
     residual = projected(base.solution.residual)
@@ -66,7 +66,10 @@ def largest_mark(estimator: Estimator, base: Fit, variant: Variant, starts: Sequ
 
 
 def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list[tuple[float, dict[str, float]]]:
-    """Values before and after a change of parameter `name`, and its time, by the chi2 that a linear step promises."""
+    """Up to `most` starts for a change of parameter `name`, by the chi2 that a linear step promises, best first.
+
+    A start holds the values before and after the change, and its time [s].
+    """
     run = estimator.data.runs[0]
     time = run.time[run.train]
     probe = estimator.at(Explanation((*base.explanation.drifted, name), base.explanation.variants), base.values)
@@ -90,11 +93,11 @@ def change_starts(estimator: Estimator, base: Fit, name: str, most: int) -> list
 
 
 def redated(estimator: Estimator, fit: Fit) -> Fit:
-    """A fit with the best moment of its change among those around it: the cost has many local minima there.
+    """`fit`, or a better one with a nearby time of its change: the cost has many local minima there.
 
-    While the shaft rests the moment of a change hardly counts, so the cost has steps. A step may be lower than the one
-    beside it only once the other values are fitted on it: the next steps on both sides are tried while that gains as
-    much as a descent goes on for.
+    While the shaft rests, the time of a change hardly matters, so the cost has steps. A step may become lower than its
+    neighbour only after the other values are fitted on it. So the next steps on both sides are tried, as long as the
+    gain is large enough for a descent to go on.
     """
     best = estimator.fit(fit.explanation, min(_moments(estimator, fit), key=lambda moment: moment[0])[1])
     best = min(fit, best, key=lambda found: found.chi2)
@@ -104,9 +107,9 @@ def redated(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
-    """The better fit from the next steps of the cost before and after the moment of `fit`, or `fit` itself.
+    """The best of `fit` and the fits on the next steps of the cost before and after the time of its change.
 
-    A step may be narrow: it is entered where the one of `fit` ends.
+    A step may be narrow: it is entered where the step of `fit` ends.
     """
     moments = _moments(estimator, fit)
     middle = REDATED.size // 2
@@ -116,7 +119,7 @@ def _on_next_steps(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def _beside(estimator: Estimator, fit: Fit, side: list[tuple[float, dict[str, float]]]) -> dict[str, float] | None:
-    """The values of `fit` with the first moment off its step on one `side`, to a sample; None if there is none."""
+    """The values of `fit` with the first time off its step on one `side`, to within a sample; None if there is none."""
     name, run, inside = f"{fit.explanation.changed}{WHEN}", estimator.data.runs[0], fit.values
     for chi2, outside in side:
         if not _on_step(chi2, fit):
@@ -138,7 +141,7 @@ def _on_step(chi2: float, fit: Fit) -> bool:
 
 
 def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, float]]]:
-    """The cost and the values of `fit` with each of the moments around that of its change."""
+    """Pairs of cost and values of `fit`, for each of the times around that of its change."""
     name = f"{fit.explanation.changed}{WHEN}"
     coordinates, shifts = estimator.coordinates(fit.explanation), REDATED * estimator.data.scales.time
     moved = [coordinates.within({**fit.values, name: fit.values[name] + shift}) for shift in shifts]
@@ -146,18 +149,18 @@ def _moments(estimator: Estimator, fit: Fit) -> list[tuple[float, dict[str, floa
 
 
 def difference(estimator: Estimator, base: Fit, variant: Variant, start: Start) -> Signal | None:
-    """What an effect added to `base` changes in the training samples [noise]; None where it cannot be added."""
+    """What an effect added to `base` changes in its residual [noise], of the same shape; None if it cannot be added."""
     try:
         added = estimator.residual(*_added(base, variant, start))
     except InputError:
         return None
-    # what is known of the values of `base` stands behind the samples, and stays as it is
+    # the prior of the values of `base` follows the samples, and does not change
     before = base.solution.residual
     return np.pad(before[: added.size] - added, (0, before.size - added.size))
 
 
 def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | None]:
-    """The models of `base` with an effect added."""
+    """The model of `base` with an effect added, and its switch with the effect added, if any."""
     own = {f"{variant.effect}.{name}": value for name, value in (*start.items(), *variant.fixed)}
 
     def with_effect(model: Model) -> Model:
@@ -168,13 +171,13 @@ def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | N
 
 
 def projection(fit: Fit) -> Callable[[Signal], Signal]:
-    """Projection of residuals, shape (samples,) or (samples, some), on what re-fitting `fit` cannot change."""
+    """Projection of residuals, shape (samples,) or (samples, some), onto what re-fitting `fit` cannot change."""
     basis = np.linalg.qr(fit.solution.jacobian)[0]
     return lambda residual: residual - basis @ (basis.T @ residual)
 
 
 def _in_quadrature(starts: Sequence[Start], variant: Variant) -> list[list[Start]]:
-    """Starts in groups that differ in the phase of a ripple alone."""
+    """Starts in groups that differ only in the phase of a ripple."""
     ripple = EFFECT[variant.effect].ripple
     phase = ripple.phase if ripple else None
     groups: dict[tuple[tuple[str, float], ...], list[Start]] = {}
@@ -185,7 +188,7 @@ def _in_quadrature(starts: Sequence[Start], variant: Variant) -> list[list[Start
 
 
 def _scaled(model: Model, variant: Variant, used: Sequence[Start], scale: Signal) -> dict[str, float]:
-    """The start with the strength, and with two starts in quadrature the phase, that the linear step asks for."""
+    """The start with the strength that the linear step gives, and with the phase if two starts are in quadrature."""
     effect = EFFECT[variant.effect]
     values = dict(used[0])
     if len(used) == 2 and effect.ripple is not None:

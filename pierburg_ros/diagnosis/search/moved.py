@@ -1,4 +1,4 @@
-"""How far each quantity of an explanation moves the signal, beside what remains."""
+"""How far each quantity of an explanation moves the signal, compared with the remainder."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from pierburg_ros.plant import Model
 
 
 def moved(data: Data, nominal: Model, fit: Fit) -> dict[Quantity, float]:
-    """Share of the mean square, of what a quantity moves and of what remains, that it moves: 0 to 1.
+    """Share, 0 to 1, of each quantity in the mean square of its own signal and the remainder together.
 
-    To first order, what drifting parameters can do instead is taken out. Of what it moves: what those of the
-    explanation can do, and for an effect one more, whichever does most. Of what remains: what all that may drift can do
-    together, where that helps, for it may bend for what no effect makes. On samples that train or on those that
-    validate, whichever is less.
+    The part that drifting parameters can reproduce is removed, to first order. From the signal of a quantity, this is
+    the part that the explanation's own drifts reproduce. For an effect, one more drift is added to them, the one that
+    removes most. From the remainder, this is the part that all parameters that may drift reproduce together, where that
+    lowers it. These parameters may adapt to an error that no effect makes. The share is the lower one of those on
+    training and on validation samples.
     """
     every, own = Estimator(all_training(data), nominal), fit.explanation
     drifts = tuple(dict.fromkeys((*own.drifted, *drifting(nominal))))
@@ -47,9 +48,9 @@ def moved(data: Data, nominal: Model, fit: Fit) -> dict[Quantity, float]:
 
 
 def _left(data: Data, signal: Signal, columns: Sequence[Signal]) -> Signal:
-    """Mean squares of a signal on the samples that train and, if any, on those that validate.
+    """Mean squares of a signal on the training and, if any, on the validation samples, shape (2,) or (1,).
 
-    The `columns` are taken out of it as the samples that train have it.
+    The `columns` are removed from the signal with weights fitted on the training samples.
     """
     if columns:
         known = np.stack(columns, axis=1)

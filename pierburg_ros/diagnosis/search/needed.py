@@ -1,4 +1,4 @@
-"""Which effects of an explanation of all are needed, counted against what would remain without them."""
+"""Which effects of an adequate explanation are needed, compared with the remainder that is left without them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from pierburg_ros.estimation.explanation import Variant, without
 
 
 def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:
-    """`best` without effects that do not make the recordings likelier by what names one, the least needed first.
+    """`best` without the effects that make the recordings less than `SIGNIFICANT` more likely, the least needed first.
 
-    Against white noise nearly every effect gains that bends a little to what no effect describes. Without it that is a
-    remainder, and costs no more than its few independent parts.
+    Against white noise, nearly every effect gains by adapting a little to an error that no effect describes. Without
+    the effect this error is a remainder, and costs no more than its few independent parts.
     """
     while names_all(best):
         variants = best.explanation.variants
@@ -30,9 +30,9 @@ def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:
 
 
 def _without(best: Fit, attempts: Attempts, effect: Variant) -> float:
-    """Minus twice the log likelihood without an effect, the others fitted again beside what then remains.
+    """Minus twice the log likelihood without an effect, the others fitted again with the remainder that is then left.
 
-    Where white noise alone makes a residual likelier than the likeliest discrepancy that was found, there is none.
+    If white noise alone makes the residual more likely than the best discrepancy found, there is no discrepancy.
     """
     rest = without(best.explanation, effect)
     fit = attempts.fits.get(rest) or attempts.add(rest, best.values)

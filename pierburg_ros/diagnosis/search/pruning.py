@@ -1,4 +1,4 @@
-"""The last step of a search: what is preferred has to stand against smaller and simpler explanations."""
+"""The last step of a search: the preferred explanation is compared with smaller and simpler ones."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from pierburg_ros.estimation.refinement import NEARLY
 
 
 def pruned(attempts: Attempts) -> Fit:
-    """The preferred explanation after each of its parts has been fitted again from its values.
+    """The preferred explanation, after smaller and simpler ones have been fitted again from its values.
 
-    A smaller explanation that had stopped in a local minimum gets its chance before a larger one wins: from the lowest
-    of the larger one's minima, since from beside it the smaller one may stop again (one that leaves nothing is at its
-    lowest). So does one with a drift in the place of two of its quantities, or of an effect. Whichever is preferred
-    then has to stand the same.
+    A smaller explanation that had stopped in a local minimum is fitted again before a larger one wins. It starts from
+    the lowest minimum of the larger one: from a point beside that, it may stop again. (A larger one that leaves only
+    noise is at its lowest already.) Explanations with a drift in place of two quantities, or of an effect, are fitted
+    in the same way. The explanation that is preferred after that is tested in turn.
     """
     while (best := attempts.preferred()).explanation not in attempts.stood:
         attempts.stood.add(best.explanation)
@@ -37,19 +37,19 @@ def pruned(attempts: Attempts) -> Fit:
 
 
 def _smaller(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
-    """An explanation with a drift in the place of two of its quantities, where events jump beside it."""
+    """The explanations with a drift in place of two quantities, where the other quantities have many local minima."""
     pairs = itertools.combinations(quantities(explanation), 2)
     return _drifting_too(filter(jumps, (without(without(explanation, one), other) for one, other in pairs)), drifts)
 
 
 def _simpler(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanation]:
-    """An explanation with a drift in the place of one of its effects, where another effect stays."""
+    """The explanations with a drift in place of one effect, where another effect stays."""
     if len(explanation.variants) < 2:
         return []
     return _drifting_too((without(explanation, variant) for variant in explanation.variants), drifts)
 
 
 def _drifting_too(rests: Iterable[Explanation], drifts: tuple[str, ...]) -> list[Explanation]:
-    """Each of the `rests` with each of the `drifts`."""
+    """Each of the `rests` with each of the `drifts` added."""
     found = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
     return [each for each in dict.fromkeys(canonical(each, drifts) for each in found) if each is not None]

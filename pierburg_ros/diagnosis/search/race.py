@@ -1,4 +1,4 @@
-"""A race of candidates: all get a few iterations, those not far behind some more, the best a whole fit."""
+"""A race of candidates: all get a few iterations, those not far behind some more, and the best a full fit."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
 
 ROUNDS = 4
-"""Iterations after which the best are chosen for a whole fit; after half of them those far behind fall out. Measured:
-over n = 148 descents to effects 137 end within 2 % of the lowest after 2, 142 after 3, 143 after 4 and 144 after 6,
-with 1,562, 1,837, 1,977 and 2,113 simulations."""
+"""Number of iterations after which the best are chosen for a full fit; after half of them, those far behind drop out.
+Measured: of n = 148 descents to effects, 137 end within 2 % of the lowest after 2 iterations, 142 after 3, 143 after 4
+and 144 after 6. They take 1,562, 1,837, 1,977 and 2,113 simulations."""
 BEHIND = 3.0
-"""Error over that of the best explanation of the same size from which a candidate is far behind. Measured: with it 22
-of n = 22 practice recordings keep their verdict; other values were not tried."""
+"""Ratio of a candidate's error to that of the best explanation of the same size, from which it is far behind. Measured:
+with it, 22 of n = 22 practice recordings keep their verdict; other values were not tried."""
 NEAR = 1.3
-"""Error over that of the best candidate up to which one gets a whole fit, besides the best few, and a change is dated
-anew. Work: a larger value costs whole fits; not varied. The change that was there led before it was dated (n = 4)."""
+"""Ratio of a candidate's error to that of the best candidate, up to which it gets a full fit besides the best few, and
+its change is dated again. Work: a larger value costs full fits; not varied. The true change led before it was dated
+again (n = 4)."""
 FINISHED = 4
-"""How many of the best get a whole fit in any case. Work: each is a whole fit; not varied."""
+"""Number of the best candidates that get a full fit in any case. Work: each is a full fit; not varied."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A candidate in the race: one of its starts, and the fit that it has come to."""
+    """A candidate in the race: one of its starts, and the fit reached from it."""
 
     candidate: Candidate
     start: dict[str, float]
@@ -45,11 +46,11 @@ def winners(
     progress: Callable[[str], None],
     most: int | None = None,
 ) -> list[Fit]:
-    """Brief fits of the candidates that deserve a whole one, the best first.
+    """Brief fits of the candidates that deserve a full fit, the best first.
 
-    `best` is the error over noise of the best explanation of the same size known, by the samples it was fitted to.
-    `most` ends the second round with so many. Of changes those near the best are then dated anew, unless it accounts
-    for all.
+    `best` is, for each estimator, the error over noise of the best known explanation of the same size. At most `most`
+    entries go into the second round. After it, changes near the best get their time searched again, unless the best is
+    adequate.
     """
     firsts = [entry for entries in pool.map(lambda each: _first(each, progress), candidates) for entry in entries]
     kept = _not_behind(firsts, best)
@@ -70,7 +71,10 @@ def _first(candidate: Candidate, progress: Callable[[str], None]) -> list[Entry]
 
 
 def _second(entry: Entry, progress: Callable[[str], None]) -> Entry:
-    """The entry carried on; where events jump, also one that has come between rests first, large errors forgiven."""
+    """The entry after more iterations; where the cost has many local minima, also by way of a fit between rests.
+
+    That way is tried if the entry is not adequate. The fit between rests forgives large errors.
+    """
     candidate, explanation = entry.candidate, entry.candidate.explanation
     progress(explanation.label)
     estimator = candidate.estimator
@@ -82,14 +86,18 @@ def _second(entry: Entry, progress: Callable[[str], None]) -> Entry:
 
 
 def _dated(entry: Entry, near: float) -> Entry:
-    """The entry with the moment of its change, if it has one and an error below `near`, looked for around it."""
+    """The entry with the time of its change searched again, if it has a change and an error below `near`."""
     if not entry.candidate.changes or entry.fit.ratio >= near:
         return entry
     return replace(entry, fit=redated(entry.candidate.estimator, entry.fit))
 
 
 def _not_behind(entries: Sequence[Entry], best: Mapping[Estimator, float]) -> list[Entry]:
-    """Those not far behind. Drifts stay; so does what jumps while nothing accounts for all: its cost may mislead."""
+    """The entries that are not far behind.
+
+    Drifts stay. Entries with many local minima stay too, as long as the leading error is above `EXPLAINED`: their cost
+    may mislead.
+    """
     leading = dict(best)
     for entry in entries:
         estimator = entry.candidate.estimator
@@ -112,7 +120,11 @@ def _best_of_each(entries: Sequence[Entry]) -> list[Entry]:
 
 
 def _deserves_whole_fit(entry: Entry, rank: int, nearest: float) -> bool:
-    """Beyond what accounts for all: what gains noticeably. Otherwise: the best few, what is near them, and drifts."""
+    """Whether an entry gets a full fit.
+
+    On an adequate base, it must gain noticeably. Otherwise the best few do, those near the best, and those without
+    effects.
+    """
     base = entry.candidate.base
     if adequate(base):
         return bool(base.misfit - entry.fit.misfit > PROMISING)

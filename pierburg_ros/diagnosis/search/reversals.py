@@ -1,9 +1,9 @@
-"""Play of the sensor, read from what it shows around reversals: no simulation has to turn round at the right moment.
+"""Play of the sensor, read from its signal around reversals: no simulation has to reverse at the right time.
 
-While the shaft moves, what a sensor with a play shows is behind by half of it, on the side where the shaft came from.
-So the error of a model is a smooth one and half the play times the direction; at a reversal it steps by the play, and
-until that is used up the sensor says nothing. A rest at a reversal that friction makes leaves no step: the shaft goes
-on from where it stood. Half the direction is a column of a linear regression beside the discrepancy.
+While the shaft moves, the signal of a sensor with play lags behind by half the play. So the error of a model is the sum
+of a smooth error and half the play times the direction. At a reversal it steps by the play, and until the play is used
+up the sensor says nothing. A rest that friction causes at a reversal leaves no step: the shaft goes on from where it
+stood. Half the direction is a column of a linear regression with the discrepancy.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import Variant
 
 TURNED = 4.0
-"""Movement back by so many noises is a reversal. Derived: white noise goes so far with 6e-5."""
+"""Movement back, in standard deviations of the noise, that counts as a reversal. Derived: white noise goes so far with
+a probability of 6e-5."""
 
 
 @dataclass(frozen=True)
 class Play:
-    """A play of the sensor as a fixed effect, its `gain` in -2 log likelihood, and what is `left` beside noise."""
+    """A play of the sensor as a fixed effect, its `gain` in -2 log likelihood, and the misfit `left` above noise."""
 
     variant: Variant
     gain: float
@@ -35,12 +36,12 @@ class Play:
 
 
 def play_at_reversals(data: Data, fit: Fit) -> Play | None:
-    """The play that the residual of a fit shows; None where the sensor can have none, or nothing turns round."""
+    """The play that the residual of a fit shows; None if it shows none, none can be added, or nothing reverses."""
     effect = _of_the_sensor(data)
     if effect is None or effect.id in fit.explanation.effects or effect.acts(fit.model.values):
         return None
     parts = [directions(run.measured, TURNED * data.noise) for run in data.runs]
-    # at rest the shaft may stand anywhere in the play
+    # at rest the shaft may stand anywhere within the play
     moves = np.concatenate([way(run.measured / data.noise) > 0.0 for run in data.runs])
     half = 0.5 * np.concatenate([part for part, _ in parts])
     moving = moves & np.concatenate([told for _, told in parts])
@@ -53,7 +54,7 @@ def play_at_reversals(data: Data, fit: Fit) -> Play | None:
     if width <= 0.0:
         return None
     left = filtered(residual + width * half)
-    # what the discrepancy leaves is not always as white as the noise
+    # the innovations are not always as small as those of white noise
     rough = max(float(left @ left) / left.size, 1.0)
     gain = (evidence(filtered, residual) - evidence(filtered, residual + width * half)) / rough
     own = abs(data.angle_per_unit) * data.noise * width
@@ -62,10 +63,10 @@ def play_at_reversals(data: Data, fit: Fit) -> Play | None:
 
 
 def directions(measured: Signal, turned: float) -> tuple[Signal, Flags]:
-    """Which way (-1, 1; 0 before the first) the shaft moves at each sample, and where it is known to move.
+    """Direction of the shaft (-1 or 1; 0 if it never moves), and where it is known to move; both of shape (samples,).
 
-    A reversal is a movement back by more than `turned` [measured unit]; around it, within that of the turning point,
-    nothing is known.
+    A reversal is a movement back by more than `turned` [measured unit]. Within `turned` of the turning point, the
+    direction is not known.
     """
     direction, told = np.zeros(measured.size), np.ones(measured.size, dtype=bool)
     for start, point, end, before in _turns(measured, turned):
@@ -75,7 +76,7 @@ def directions(measured: Signal, turned: float) -> tuple[Signal, Flags]:
 
 
 def _turns(measured: Signal, turned: float) -> Iterator[tuple[int, int, int, float]]:
-    """Each turning point: where it was come near, where it is, where it was left, and the direction before it."""
+    """For each turning point: the samples where it is approached, reached and left, and the direction before it."""
     direction, extreme = 0.0, 0
     for k in range(measured.size):
         ahead = measured[k] - measured[extreme]
@@ -95,6 +96,6 @@ def _turns(measured: Signal, turned: float) -> Iterator[tuple[int, int, int, flo
 
 
 def _of_the_sensor(data: Data) -> Effect | None:
-    """The effect that is a free play between shaft and sensor."""
+    """The effect that is a free play between shaft and sensor; None if there is none."""
     plays = (each for each in possible(data.actuator) if each.play is not None and each.stage == "sensor")
     return next(plays, None)

@@ -1,4 +1,4 @@
-"""Ripples of the load over angle or time, beside other changes: descents between the rests of the shaft."""
+"""Ripples of the load over angle or time, added to other changes: descents between the rests of the shaft."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.least_squares import BRIEF
 
 AMPLITUDE = 0.0022
-"""Amplitude from which descents start, as a share of the stall torque. Measured: beside the right drift a descent leads
-to the number of teeth in 16 of n = 17 trials of cogging (amplitudes of 0.003 to 0.014), from twice as much in 14. A
-small one lowers the error wherever its rhythm and phase are right."""
+"""Amplitude from which descents start, as a share of the stall torque. Measured: with the right drift, a descent leads
+to the number of teeth in 16 of n = 17 trials of cogging (amplitudes of 0.003 to 0.014). From twice the amplitude, it
+does so in 14. A small amplitude lowers the error wherever its rhythm and phase are right."""
 PHASES = tuple(math.pi / 4 * number for number in range(8))
-"""Phases [rad] from which they may. Measured: over whole recordings 0.3 rad beside the truth ends at 1.25 to 16 times
-the noise (n = 2); an eighth of a turn leaves at most 0.4 rad, which the costs between rests bridge."""
+"""Phases [rad] from which descents may start. Measured: over whole recordings, a start 0.3 rad from the true phase ends
+at 1.25 to 16 times the noise (n = 2). With steps of an eighth of a turn, a start is at most 0.4 rad away, and the costs
+between rests bridge that."""
 FOLLOWED = 2
-"""How many explanations are followed up. Work: each costs two descents along whole recordings; not varied."""
+"""Number of explanations that are followed up. Work: each costs two descents along whole recordings; not varied."""
 
 
 def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:
@@ -40,12 +41,13 @@ def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:
 def between_rests(
     estimator: Estimator, variant: Variant, ripple: Ripple, bases: Mapping[Explanation, Fit], pool: Executor
 ) -> list[Fit]:
-    """Fits of explanations with a `ripple`, each grown on the fit without it in `bases`: those where it explains most.
+    """Fits of explanations with a `ripple`, each grown on the fit without it in `bases`: the `FOLLOWED` best ones.
 
-    The shaft rests where the ripple lets it, and setting off at the wrong crest displaces all that follows: a descent
-    over a whole recording ends where one such moment is wrong. Between rests it does not. One descent starts from the
-    best phase of each rhythm that lowers the error of the likeliest base. What remembers longer than a rest, or changes
-    in the middle, is left out; where no rhythm lowers the error, the list is empty.
+    The shaft rests where the ripple lets it. If it sets off at the wrong crest, everything after that is displaced, so
+    a descent over a whole recording ends where one such moment is wrong. Between rests this does not happen. For the
+    base with the lowest error, one descent starts from the best phase of each rhythm that lowers this error. Bases with
+    a change in mid-recording, or with an effect that remembers longer than a rest, are left out. If no rhythm lowers
+    the error, the list is empty.
     """
     rests = estimator.between_rests
     grown = [(e, rests.restated(base)) for e, base in bases.items() if e.changed is None and forgotten(e.effects)]
@@ -76,7 +78,7 @@ def between_rests(
 def _scanned(
     estimator: Estimator, variant: Variant, ripple: Ripple, explanation: Explanation, base: Fit, pool: Executor
 ) -> list[dict[str, float]]:
-    """Where each rhythm that lowers the error of `base` between rests lowers it most, at one small amplitude."""
+    """For each rhythm that lowers the error of `base` between rests, its best start at one small amplitude."""
     missing = missing_torque(estimator.data, estimator.data.longest, base.model)
     effect, scales = EFFECT[variant.effect], base.model.scales
     rows = [(AMPLITUDE, *row) for row in itertools.product(dict.fromkeys(ripple.rhythms(missing)), PHASES)]

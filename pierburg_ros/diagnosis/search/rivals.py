@@ -1,4 +1,4 @@
-"""What else could stand for each quantity of the best explanation: fitted, so that ties can be told."""
+"""Explanations with something else in place of a quantity of the best one, fitted so that ties can be reported."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from pierburg_ros.estimation.explanation import (
 from pierburg_ros.plant import Model
 
 FADING = (0.75, 0.5, 0.25, 0.0)
-"""Shares of an effect's strength at which what may stand for it is fitted in turn. Work: one brief fit each; in one
-step the others would have to take over all of it, and events would jump. Not varied."""
+"""Shares of an effect's strength at which its possible replacement is fitted in turn. Work: one brief fit each; in one
+step the other quantities would have to take over the whole effect, and events would jump. Not varied."""
 
 
 def fit_rivals(attempts: Attempts, best: Fit) -> None:
-    """Try what could stand for each quantity of `best`: any other one, and for an effect any one or two parameters.
+    """Fit replacements for each quantity of `best`: any other quantity, and for an effect any one or two parameters.
 
-    A load that never ends is a parameter that changed when it began.
-    Where events jump and something is left, other drifts start from the values of `best` as well.
+    A load that never ends is the same as a parameter that changed when it began.
+    If the cost has many local minima and `best` is not adequate, other drifts start from the values of `best` as well.
     """
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
@@ -45,23 +45,23 @@ def fit_rivals(attempts: Attempts, best: Fit) -> None:
         rivals += _by_a_change(rest, quantity, attempts)
         list(attempts.pool.map(partial(_tried, attempts, rest, quantity, best), dict.fromkeys(rivals)))
         fits = (attempts.fits[rival] for rival in rivals if rival in attempts.fits)
-        # what lacks less than one more quantity has to gain may lack it by its local minimum alone
+        # a rival that lacks less than one more quantity has to gain may only be in a wrong local minimum
         near = (fit for fit in fits if not adequate(best) or not gains_enough(fit, best, 1))
         attempts.refine(near)
 
 
 def _tried(attempts: Attempts, rest: Explanation, quantity: Quantity, best: Fit, rival: Explanation) -> None:
-    """Try a `rival` of a `quantity` of `best`, which has the `rest` beside it."""
+    """Fit a `rival` for a `quantity` of `best`; the `rest` is `best` without that quantity."""
     known = attempts.fits.get(rival)
     if isinstance(quantity, Variant) and (known is None or known.misfit > alike(best)):
         _take_over(attempts, rival, quantity, best)
     elif jumps(rest) and not adequate(best):
-        # grown on the rest, its effects have first been bent to stand for the drift
+        # grown on the rest, the effects of the rival have first adapted to replace the drift
         attempts.add(rival, best.values)
 
 
 def _by_a_change(rest: Explanation, quantity: Quantity, attempts: Attempts) -> list[Explanation]:
-    """`rest` with the parameter that may have changed at the moment at which an effect begins, if it has one."""
+    """`rest` with a parameter that may have changed when an effect begins; empty if there is no such parameter."""
     if not isinstance(quantity, Variant) or not may_change(rest, attempts.data):
         return []
     constant = _constant_part(quantity, attempts.nominal)
@@ -71,7 +71,7 @@ def _by_a_change(rest: Explanation, quantity: Quantity, attempts: Attempts) -> l
 
 
 def _constant_part(variant: Variant, model: Model) -> tuple[str, str] | None:
-    """Dotted name of what acts as a change of a base parameter, and that parameter; None where the model has none."""
+    """Dotted name of a parameter that acts like a change of a base parameter, and that one; None if there is none."""
     constant = EFFECT[variant.effect].constant_part
     if constant is None or constant[1] not in model.values:
         return None
@@ -79,16 +79,17 @@ def _constant_part(variant: Variant, model: Model) -> tuple[str, str] | None:
 
 
 def _beginning(variant: Variant) -> str | None:
-    """Dotted name of the moment from which an effect acts, where that is searched."""
+    """Dotted name of the time from which an effect acts; None if that is not searched."""
     return next(iter(moments(variant)), None)
 
 
 def _take_over(attempts: Attempts, explanation: Explanation, fading: Variant, best: Fit) -> None:
-    """Fit an explanation that stands for an effect of `best` by other means, if it keeps up as the effect fades.
+    """Fit an explanation that replaces an effect of `best`, if it fits almost as well while the effect fades.
 
-    In one step the others would have to take over all of it, and events would jump. They would also jump if its other
-    effects gave way meanwhile. What takes over may hardly be told apart itself, as resistance and supply are: the first
-    steps are those that the slopes foresee, for damped ones would not come far along such a valley.
+    In one step, the replacement would have to take over the whole effect, and events would jump. Events would also jump
+    if the other effects changed meanwhile, so these are held. The quantities that take over may hardly be distinguished
+    from each other, such as resistance and supply. So the first steps are those that the gradients predict: damped
+    steps would not go far along such a valley.
     """
     values = best.values
     for start in _at_once(explanation, fading, best):
@@ -109,7 +110,7 @@ def _take_over(attempts: Attempts, explanation: Explanation, fading: Variant, be
 
 
 def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[dict[str, float]]:
-    """Values at which a base parameter is what the effect was, all the time or from its start, if there is one."""
+    """Values at which a base parameter replaces the effect, all the time or from its beginning, if it has one."""
     constant = _constant_part(fading, best.model)
     if constant is None:
         return
@@ -122,7 +123,7 @@ def _at_once(explanation: Explanation, fading: Variant, best: Fit) -> Iterator[d
 
 
 def _faded(variant: Variant, fit: Fit, share: float) -> Variant:
-    """The effect as `fit` has it, fixed at a share of its strength."""
+    """The effect with its values from `fit`, fixed at a `share` of its strength."""
     declared = EFFECT[variant.effect]
     values = {name: fit.model.values[f"{variant.effect}.{name}"] for name in declared.names}
     scaled = {name: value * (share if name in declared.strength else 1.0) for name, value in values.items()}

@@ -1,4 +1,4 @@
-"""How likely a fit makes the recordings when what it leaves is part of the likelihood."""
+"""How likely a fit makes the recordings when its remainder is part of the likelihood."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pierburg_ros.plant import Model
 
 @dataclass(frozen=True)
 class Scored:
-    """A fit with the most likely discrepancy beside it, and `cost`: minus twice the log likelihood of the two."""
+    """A fit, its most likely discrepancy, and `cost`: minus twice the log likelihood of both together."""
 
     fit: Fit
     discrepancy: Discrepancy
@@ -30,7 +30,7 @@ class Scored:
 
 
 def scored(data: Data, fit: Fit) -> Scored:
-    """`fit` as it is, with its most likely discrepancy."""
+    """`fit`, not fitted again, with its most likely discrepancy."""
     kalman = Kalman(data, data.train)
     residual = data.residual(fit.model, fit.switch)
     discrepancy = kalman.most_likely(residual)
@@ -38,9 +38,9 @@ def scored(data: Data, fit: Fit) -> Scored:
 
 
 def unseen(data: Data, fit: Fit) -> float:
-    """Minus twice the log likelihood of the samples that validate, when those that train are known.
+    """Minus twice the log likelihood of the validation samples, given the training samples.
 
-    With the discrepancy that is most likely on both: what remains where nothing was fitted may be larger.
+    The discrepancy is the most likely one on both: the remainder may be larger where nothing was fitted.
     """
     residual, both = data.residual(fit.model, fit.switch), Kalman(data, data.train | data.validation)
     discrepancy = both.most_likely(residual)
@@ -48,14 +48,14 @@ def unseen(data: Data, fit: Fit) -> float:
 
 
 def estimator_beside(data: Data, nominal: Model, discrepancy: Discrepancy) -> Estimator:
-    """What fits beside a `discrepancy`: innovations, and how far values lie from what is plausible."""
+    """An estimator with a `discrepancy`: its cost counts innovations, and how far values lie from plausible ones."""
     return Estimator(data, nominal, discrepancy=discrepancy, unit=1.0)
 
 
 def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
-    """`fit` with its most likely discrepancy, fitted again with that while it makes the recordings likelier.
+    """`fit` with its most likely discrepancy, fitted again with it as long as the recordings become more likely.
 
-    It ends where one more time gains no more than chance gives a quantity.
+    It ends when one more fit gains no more than chance gives one quantity.
     """
     best = scored(data, fit)
     while True:
@@ -67,12 +67,12 @@ def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
 
 
 def plausible(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
-    """`fits` settled, those with effects of values that few actuators have left out: what bends often has such."""
+    """`fits`, settled, without those with effect values that few actuators have: effects that adapt often have such."""
     found = pool.map(lambda fit: settled(data, nominal, fit), fits)
     return [each for each in found if not strange(each.fit, data, nominal)]
 
 
 def strange(fit: Fit, data: Data, nominal: Model) -> set[str]:
-    """Names of the effects' values that few actuators have."""
+    """Names of the effects' parameters with values that few actuators have."""
     coordinates = Estimator(data, nominal).coordinates(fit.explanation)
     return {name for name in implausible(coordinates, coordinates.point(fit.values)) if "." in name}

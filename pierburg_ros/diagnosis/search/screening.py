@@ -1,4 +1,4 @@
-"""What may be added to an explanation, ranked by how far a linear step along it promises to come."""
+"""Candidates for one more quantity in an explanation, ranked by what a linear step along each promises."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 LATE = 0.5
-"""Excess of squared error in a first fit, as a share of the whole, below which that fit takes in everything. Derived:
-less than half of what is left to explain would be seen."""
+"""Squared error beyond the noise in the first part, as a share of that in the whole, below which a first fit uses whole
+recordings. Derived: the first part would show less than half of what is left to explain."""
 Promised = tuple[float, dict[str, float]]
-"""The chi2 that a linear step promises, and the start that it comes to."""
+"""The chi2 that a linear step promises, and the start that it leads to."""
 STARTS_TRIED = 2
-"""Starts from which a first fit is taken. Work: each costs one brief fit; not varied."""
+"""Number of starts from which a first fit begins. Work: each costs one brief fit; not varied."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """An explanation to be fitted: by what it is grown, on which samples, from which starts.
+    """An explanation to be fitted: with which addition, on which samples, from which starts.
 
-    `base` is the fit that it grows on, on the same samples, `promise` the error over noise that a linear step
-    from there comes to, infinite where none was made.
+    `base` is the fit that it grows on, on the same samples. `promise` is the error over noise to which a linear step
+    from there leads, infinite if no such step was made.
     """
 
     explanation: Explanation
@@ -42,17 +42,17 @@ class Candidate:
 
     @property
     def jumps(self) -> bool:
-        """Whether the cost has many local minima along what is added."""
+        """Whether the cost has many local minima along the addition."""
         return isinstance(self.addition, Variant) and EFFECT[self.addition.effect].jumps
 
     @property
     def drifts(self) -> bool:
-        """Whether it grows by a drift: cheap to fit, and perhaps what others grow on."""
+        """Whether the addition is a drift: cheap to fit, and perhaps a base for others."""
         return self.addition in self.explanation.drifted
 
     @property
     def changes(self) -> bool:
-        """Whether it grows by a change in the middle of the recording."""
+        """Whether the addition is a change in mid-recording."""
         return self.addition == self.explanation.changed
 
 
@@ -64,7 +64,7 @@ def screened(
     pool: Executor,
     progress: Callable[[str], None],
 ) -> list[Candidate]:
-    """Every addition to `fit` with its promise, on the `first_part` of each run where that shows it."""
+    """Every addition to `fit` with its promise, on the `first_part` of each run if that shows the error left."""
     base = whole.restated(fit)
     brief = first_part.restated(base)
     quick = (whole, base) if _shows_late(brief, base) else (first_part, brief)
@@ -83,18 +83,18 @@ def screened(
 
 
 def most_promising(candidates: list[Candidate], most: int) -> list[Candidate]:
-    """The first so many by what a linear step promises."""
+    """The `most` candidates for which a linear step promises the lowest error."""
     return sorted(candidates, key=lambda candidate: candidate.promise)[:most]
 
 
 def _takes_time(variant: Variant) -> bool:
-    """Whether an effect goes by the time since the start: the first part of a recording may not show it."""
+    """Whether an effect depends on the time since the start: the first part of a recording may not show it."""
     effect = EFFECT[variant.effect]
     return effect.dated or effect.memory == "lasting"
 
 
 def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Candidate:
-    """A change in the middle of the recording on top of `base`, at the moments that gain most."""
+    """The candidate with a change in mid-recording added to `base`, at the times that gain most."""
     name = explanation.changed
     assert name is not None
     starts = _worthwhile(change_starts(estimator, base, name, STARTS_TRIED), base)
@@ -102,7 +102,7 @@ def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Cand
 
 
 def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: Fit) -> Candidate:
-    """One more drift on top of `base`."""
+    """The candidate with one more drift added to `base`."""
     promise = promised_by_drift(estimator.at(explanation, base.values))
     starts = _worthwhile([(promise, base.values)], base)
     return Candidate(explanation, name, estimator, base, tuple(start for _, start in starts), _error(promise, base))
@@ -111,7 +111,7 @@ def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: F
 def _acting(
     explanation: Explanation, variant: Variant, starts: list[Start], estimator: Estimator, base: Fit
 ) -> Candidate:
-    """One more effect on top of `base`, from the starts that promise most, if any does."""
+    """The candidate with one more effect added to `base`, from the starts that promise most, if any does."""
     found = _worthwhile(promised(estimator, base, variant, starts)[:STARTS_TRIED], base)
     promise = min((chi2 for chi2, _ in found), default=np.inf)
     chosen = tuple({**base.values, **start} for _, start in found)
@@ -119,14 +119,14 @@ def _acting(
 
 
 def _worthwhile(starts: Sequence[Promised], base: Fit) -> Sequence[Promised]:
-    """The starts that promise a noticeable gain where `base` leaves nothing, otherwise all."""
+    """The starts that promise a noticeable gain if `base` is adequate, otherwise all starts."""
     if not adequate(base):
         return starts
     return [(chi2, start) for chi2, start in starts if base.chi2 - chi2 > PROMISING]
 
 
 def _error(chi2: float, fit: Fit) -> float:
-    """Error over noise that a sum of squares on the samples of `fit` amounts to."""
+    """The error over noise that belongs to a sum of squares on the samples of `fit`."""
     return float(np.sqrt(chi2 / fit.solution.residual.size))
 
 

@@ -1,4 +1,4 @@
-"""The search: explanations from the smallest up, each grown by one more quantity, until another gains too little."""
+"""The search: it grows explanations from the smallest, one quantity at a time, until one more gains too little."""
 
 from __future__ import annotations
 
@@ -25,18 +25,19 @@ from pierburg_ros.estimation.refinement import NEARLY
 from pierburg_ros.plant import Model
 
 AGAIN = 1.5
-"""Times the trials made before it is asked what is likeliest beside a remainder that a search that resigns goes on for
-after the answer. Measured: static friction beside a drift, of 20 s, is found after 0.93 (n = 1 recording, counted three
-times, each the same); of n = 36 trials with two effects, a change, or an effect whose cost is rough, 35 ended before
-that was asked, 34 of them right. Half as much again is for other processors, whose rounding leads elsewhere."""
+"""Number of trials that a resigning search makes after it has evaluated the most likely explanation beside a remainder,
+as a multiple of the trials before. Measured: static friction with a drift, of 20 s, is found after 0.93 (n = 1
+recording, counted three times, each the same). Of n = 36 trials with two effects, a change, or an effect whose cost is
+rough, 35 ended before that evaluation, 34 of them right. Half as much again is for other processors, whose rounding
+leads elsewhere."""
 
 
 class Resigned(BaseException):
-    """The search has gone on in vain for long enough: like the end of the time it waits for nothing."""
+    """The search has gone on in vain for long enough: like `OutOfTime`, this waits for nothing."""
 
 
 class Search(Attempts):
-    """What is tried after what: the cheap and the frequent first."""
+    """The order of the trials: cheap and frequent explanations come first."""
 
     def __init__(
         self, data: Data, nominal: Model, pool: Executor, progress: Progress = lambda _: None, beam: Beam | None = None
@@ -49,11 +50,11 @@ class Search(Attempts):
         self._told, self._until = 0, math.inf
 
     def run(self) -> Fit:
-        """Grow explanations until the best leaves nothing or cannot be bettered; gives that best one.
+        """Grow explanations until the best is adequate or cannot be bettered; gives the best one.
 
-        Where no explanation of a size betters the smaller ones, but these do not account for all either, the next size
-        is tried all the same: two quantities may do what neither does alone. So is the next size where something larger
-        is known that does not account for all.
+        If no explanation of a size betters the smaller ones, and these are not adequate, the next size is still tried.
+        Two quantities may do what neither does alone. The next size is also tried if a larger explanation is the best
+        but is not adequate.
         """
         best, size = self.add(Explanation()), 0
         while size < self.beam.depth and not self.exhausted and not names_all(best):
@@ -68,10 +69,10 @@ class Search(Attempts):
         return best
 
     def check(self) -> None:
-        """Count one more trial: `Resigned` once there were enough after it was asked what is likeliest.
+        """Count one more trial; raise `Resigned` once the trials that `AGAIN` allows have been made.
 
-        Not where an explanation accounts for all by now, which is to be held against others. Trials are counted, not
-        timed: a verdict must not depend on how fast the machine is.
+        It is not raised if an adequate explanation is known by then: that one must be compared with others. Trials are
+        counted, not timed: a verdict must not depend on how fast the machine is.
         """
         self._told += 1
         if self._told > self._until and not any(adequate(fit) for fit in list(self.fits.values())):
@@ -79,10 +80,10 @@ class Search(Attempts):
             raise Resigned
 
     def _grow(self, best: Fit) -> None:
-        """Fit explanations with one quantity more than `best`, the cheap way first, until one leaves nothing.
+        """Fit explanations with one quantity more than `best`, the cheap way first, until one is adequate.
 
-        A ripple waits until what is most promising beside a drift has been tried, if anything will be: between rests it
-        takes seconds, and beside a drift it is found as well as alone.
+        A ripple waits until the most promising additions to a drift have been tried, if any will be. A fit between
+        rests takes seconds, and a ripple is found with a drift as well as alone.
         """
         size = best.explanation.size
         seeds = self._seeds(best)
@@ -113,9 +114,9 @@ class Search(Attempts):
                 self.refine_leading(size + 1)
 
     def _accounted_for(self, best: Fit) -> bool:
-        """Whether something accounts for all by now, or does where what leads is grown.
+        """Whether an adequate explanation is known, or is found by growing the leading one or with all drifts together.
 
-        Where a ripple leads, it has to be looked for between rests first.
+        If a ripple leads, it is first fitted between rests.
         """
         size = best.explanation.size
         if self.completed(size) or self.completed(size + 1):
@@ -127,9 +128,9 @@ class Search(Attempts):
         return self._followed(best) or self._all_drift()
 
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
-        """Descend again to what leads among explanations of a `size`, if its cost has many local minima.
+        """Refine the leading explanation of a `size`, if its cost has many local minima.
 
-        Ripples come first, for they are found in less time than a minimum among many.
+        Ripples come first: they are found in less time than one minimum among many.
         """
         leading = self.best_of_size(size)
         if leading is None or adequate(leading):
@@ -139,10 +140,10 @@ class Search(Attempts):
             self.refine_leading(size)
 
     def _followed(self, best: Fit) -> bool:
-        """Grow what leads among the explanations one quantity larger than `best`, if it leaves far less.
+        """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
 
-        Whether that accounts for all: then nothing else of its size is looked for. Near the noise it may only have
-        stopped too early, or another has.
+        If so, no other explanation of its size is tried. A leading explanation near the noise is not grown: it may only
+        have stopped too early, or another may have.
         """
         size = best.explanation.size + 1
         leading = self.best_of_size(size)
@@ -154,16 +155,16 @@ class Search(Attempts):
         return self.completed(size + 1)
 
     def _all_drift(self) -> bool:
-        """Whether something accounts for all where all drift that recordings tell apart; asked once."""
+        """Whether an explanation is adequate where all parameters drift that recordings distinguish; evaluated once."""
         if self.all_drifted or self.exhausted:
             return False
         self.all_drifted = True
         return drift_together(self)
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
-        """Expand those of the `seeds` that only drift, before anything dear is done; whether that is the end.
+        """Expand those of the `seeds` that have no effect, before any expensive step; gives whether to end there.
 
-        An effect beside a drift is more frequent than two effects, and found in a tenth of the time.
+        An effect with a drift is more frequent than two effects, and is found in a tenth of the time.
         """
         for seed in seeds:
             size = seed.explanation.size + 1
@@ -176,10 +177,10 @@ class Search(Attempts):
         return False
 
     def _wants_refinement(self, best: Fit, size: int) -> bool:
-        """Whether fits of a `size` grown from the `best` smaller one should be refined now.
+        """Whether fits of a `size` that grew from the smaller `best` should be refined now.
 
         Single quantities wait until a pair of them has been tried, unless none betters the nominal model, or the best
-        may only have stopped too early.
+        one may only have stopped too early.
         """
         leading = self.best_of_size(size)
         if leading is None or adequate(best) or adequate(leading):
@@ -187,15 +188,16 @@ class Search(Attempts):
         return size > 1 or self._stopped_early(size) or self.preferred(1).explanation.size == 0
 
     def _stopped_early(self, size: int) -> bool:
-        """Whether the best of a `size` may only have stopped in a local minimum before it accounts for all."""
+        """Whether the best of a `size` may have stopped in a local minimum before it became adequate."""
         leading = self.best_of_size(size)
         return leading is not None and not adequate(leading) and jumps(leading.explanation) and leading.ratio < NEARLY
 
     def _seeds(self, best: Fit) -> list[Fit]:
-        """Fits of the size of `best` worth growing: itself, and while nothing is adequate its rivals.
+        """Fits of the size of `best` that are worth growing: `best` itself and, if it is not adequate, its rivals.
 
-        Single drifts come first: an effect beside a drift is more frequent than two effects, and found sooner. A
-        change in the middle has more freedom than a drift, and must fit that much better.
+        Single drifts come first: an effect with a drift is more frequent than two effects, and is found sooner. A
+        change in mid-recording has more freedom than a drift, so it must have less than half the chi2 of the best fit
+        without one.
         """
         size = best.explanation.size
         if adequate(best):
@@ -207,11 +209,11 @@ class Search(Attempts):
         return list({id(fit): fit for fit in (*drifts, *rivals[: self.beam.width])}.values())
 
     def _likeliest_accounts_for_all(self) -> bool:
-        """Whether what is likeliest beside a remainder leaves nothing, fitted as if there were none; asked once.
+        """Whether the most likely explanation beside a remainder is adequate when fitted without one; evaluated once.
 
-        It is not refined where something else comes far nearer. A search that resigns does so here where too much is
-        left and nothing comes near the noise, without refining anything. It does as well where no event jumps in what
-        comes nearest: its cost is smooth, and what linear steps promise has been fitted.
+        It is not refined if another explanation has a far smaller error. A search that resigns does so here, without
+        refining anything, if too much is left and nothing comes near the noise. It also resigns if the best fit has a
+        smooth cost: the additions for which linear steps promise most have been fitted by then.
         """
         if self.beside is not None:
             return False
@@ -234,16 +236,16 @@ class Search(Attempts):
         return False
 
     def _least(self) -> float:
-        """The least training error over noise so far."""
+        """The least training error over noise so far, among explanations within the beam's depth."""
         return self.nearest().ratio
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
-        """Fit ripples of the load on top of the `seeds`, once, by the way that leads to them where the shaft slips."""
+        """Fit ripples of the load on top of the `seeds`, once, between rests: this finds them where the shaft slips."""
         size = seeds[0].explanation.size + 1
         if size in self.rippled:
             return
         self.rippled.add(size)
-        # alone as well: drifts that have bent for a ripple hide it
+        # on the nominal model as well: drifts that have adapted to a ripple hide it
         groups = (seeds, self.of_size(0)) if size == 2 else (seeds,)
         for begins, (variant, ripple) in itertools.product(groups, ripples(self.whole)):
             if self.completed(size) or self.completed(1):

@@ -1,4 +1,4 @@
-"""What the data can tell apart: when a larger explanation is worth its quantities, and which ones fit alike."""
+"""What the data can distinguish: when a larger explanation is worth its quantities, and which ones are tied."""
 
 from __future__ import annotations
 
@@ -10,30 +10,31 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.likelihood import EXPLAINED, TIED
 
 SIGNIFICANT = 60.0
-"""Gain in chi2, in effective samples, that one more quantity must bring. Measured: with it none of n = 100 blind
-trials without an effect is given one, and 406 of 411 shown effects are named. Four times `PROMISING`. An error that
-lasts is told by as much: white noise speaks for one with 18 at most (n = 3000, 22,500 samples each), noise whose
-neighbours are correlated by 0.3 with 48 (n = 200), what n = 65 right explanations leave with 21, and a false one that
-left 1.01 times the noise with 784."""
+"""Gain in chi2, in effective samples, that one more quantity must bring. Measured: with it, none of n = 100 blind
+trials without an effect is given one, and 406 of 411 shown effects are named. It is four times `PROMISING`. The same
+threshold decides whether a residual is correlated in time. The evidence for that is 18 at most in white noise (n =
+3000, 22,500 samples each), and 48 in noise whose neighbours are correlated by 0.3 (n = 200). It is 21 in the residuals
+of n = 65 right explanations, and 784 in that of a wrong one that left 1.01 times the noise."""
 PROMISING = 15.0
-"""Gain in chi2 that a first fit must promise on top of an adequate explanation to be followed up. Measured: in n = 13
+"""Gain in chi2 over an adequate explanation that a first fit must promise to be followed up. Measured: in n = 13
 recordings without an effect, drifted ones included, none gained as much."""
 
 
 def gain(smaller: Fit, larger: Fit) -> float:
-    """What the larger explanation gains in chi2, counted in effective samples."""
+    """The gain of the larger explanation in chi2, in effective samples."""
     return (smaller.misfit - larger.misfit) / larger.repetition
 
 
 def gains_enough(smaller: Fit, larger: Fit, more: int) -> bool:
-    """Whether so many quantities `more` gain what each has to, beyond what simulations of the smaller may differ by."""
+    """Whether `more` further quantities gain `SIGNIFICANT` each, beyond the `allowance` of the smaller explanation."""
     return gain(smaller, larger) > SIGNIFICANT * more + allowance(smaller) / larger.repetition
 
 
 def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
-    """Whether a larger explanation gains more than chance and the difference of simulators can give it.
+    """Whether a larger explanation gains more than chance and the difference between simulators can give it.
 
-    It may not fail on the validation samples where the smaller one does not: then it fits the training samples alone.
+    It may not fail on the validation samples where the smaller one does not: then it would fit the training samples
+    alone.
     """
     more = larger.explanation.size - smaller.explanation.size
     if not gains_enough(smaller, larger, more):
@@ -42,20 +43,20 @@ def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
 
 
 def adequate(fit: Fit) -> bool:
-    """Whether an explanation accounts for all: it leaves nothing but noise, of a size that may be estimated low.
+    """Whether an explanation is adequate: it leaves only noise, of a size that may be estimated too low.
 
-    What remains is one more quantity, and told by as much as any other.
+    A residual that is correlated in time counts as one more quantity, with the same threshold.
     """
     return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
 
 
 def names_all(fit: Fit) -> bool:
-    """Whether an explanation with an effect accounts for all."""
+    """Whether an explanation has an effect and is adequate."""
     return bool(fit.explanation.variants) and adequate(fit)
 
 
 def overlooks(fit: Fit, estimator: Estimator) -> bool:
-    """Whether an explanation without an effect accounts for training but not for validation samples."""
+    """Whether an explanation without an effect is adequate on the training but fails on the validation samples."""
     if fit.explanation.variants or not adequate(fit):
         return False
     samples = int(np.count_nonzero(estimator.data.validation))
@@ -63,19 +64,20 @@ def overlooks(fit: Fit, estimator: Estimator) -> bool:
 
 
 def allowance(fit: Fit) -> float:
-    """Chi2 of what is no evidence though it lasts."""
+    """Chi2 of errors that are correlated in time but are no evidence, such as the difference between simulators."""
     return fit.solution.residual.size * fit.unlike**2
 
 
 def alike(best: Fit) -> float:
-    """Chi2 up to which a fit is not told apart from `best` by the training samples."""
+    """Chi2 up to which the training samples do not distinguish a fit from `best`."""
     return best.misfit + TIED * best.repetition
 
 
 def tied(best: Fit, among: Iterable[Fit], estimator: Estimator) -> list[Fit]:
-    """Those `among` some fits of a search that the data cannot tell from `best`, itself if it is one of them.
+    """Those `among` the fits of a search that the data do not distinguish from `best`, which may be one of them.
 
-    They fit the training samples alike; one that fails on the validation samples, where another does not, is out.
+    They fit the training samples equally well. A fit that fails on the validation samples where another does not is
+    left out.
     """
     limit = alike(best)
     fits = [fit for fit in among if fit.misfit <= limit]
@@ -85,5 +87,5 @@ def tied(best: Fit, among: Iterable[Fit], estimator: Estimator) -> list[Fit]:
 
 
 def _highest(least: float, fit: Fit) -> float:
-    """Misfit on the validation samples from which a fit is out where another has the `least`."""
+    """Highest misfit on the validation samples that a fit may have where another has the `least`."""
     return max(EXPLAINED**2 * least, least + SIGNIFICANT * fit.repetition)

@@ -1,4 +1,4 @@
-"""What recordings support although something remains: quantities added one by one, counted against what remains."""
+"""What recordings support although a remainder is left: quantities added one by one, scored beside the remainder."""
 
 from __future__ import annotations
 
@@ -20,19 +20,20 @@ from pierburg_ros.estimation.explanation import Explanation, Variant, quantities
 from pierburg_ros.plant import Model
 
 MOST = 4
-"""Most quantities that are added. Work: each is a round of a second or more; not varied."""
+"""Largest number of quantities that are added. Work: each is a round of a second or more; not varied."""
 OPEN = 1.0 / 3.0
-"""What is left over what the nominal model leaves, in -2 log likelihood, up to which a search for an explanation of all
-goes on. Measured: of n = 5 recordings three that something outside the catalogue is in left 0.22, 0.65 and 0.92 of it,
-and two that were explained after all 0.18 and 0.19; one that goes on in vain costs time and no name."""
+"""Ratio of the misfit left to that of the nominal model, in -2 log likelihood, up to which the search for an adequate
+explanation goes on. Measured: of n = 5 recordings, three that contain something outside the catalogue left 0.22, 0.65
+and 0.92, and two that were explained after all 0.18 and 0.19. A search that goes on in vain costs time and no name."""
 
 
 @dataclass(frozen=True)
 class Beside:
-    """What recordings say when they are counted against what remains.
+    """What recordings support beside a remainder.
 
-    The likeliest explanation `reached`, what the nominal model leaves (`begun`, in -2 log likelihood), and what of it
-    unseen samples have `confirmed`; where it was `stopped`, what was known by then.
+    `reached` is the most likely explanation. `begun` is what the nominal model leaves, in -2 log likelihood.
+    `confirmed` is the explanation that unseen samples confirm. If the work was `stopped`, they hold what was known by
+    then.
     """
 
     reached: Scored
@@ -42,17 +43,17 @@ class Beside:
 
     @property
     def open(self) -> bool:
-        """Whether so little is left that an explanation of its size may account for all."""
+        """Whether so little is left that an explanation of this size may be adequate."""
         return self.begun > 0.0 and self.reached.left < OPEN * self.begun
 
 
 def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, progress: Progress) -> Beside:
-    """The likeliest explanation, and what of it unseen samples confirm; `known` are fits that a search has made.
+    """The most likely explanation, and the part of it that unseen samples confirm; `known` are fits of a search.
 
-    What bends to a remainder gains where it was fitted, and not on samples that validate: of the named, those without
-    whose gain there are taken away again, the weakest first. The later ones may bend and take from those before: what
-    is confirmed is heard after each, and the likeliest of that is told, without what a likelier explanation can do
-    without.
+    A quantity that adapts to a remainder gains on the training samples, but not on the validation samples. Quantities
+    without a gain there are removed again, the weakest first. A later quantity may adapt and take gain from earlier
+    ones, so this test is made after each addition. The most likely of the confirmed explanations is reported, unless it
+    has an effect that a more likely explanation does without.
     """
     weighing = Weighing(data, nominal, pool)
     reached = scored(data, Estimator(data, nominal).at(Explanation()))
@@ -68,12 +69,13 @@ def supported(data: Data, nominal: Model, known: Iterable[Fit], pool: Executor, 
 
 
 def _approached(weighing: Weighing, begin: Scored, known: Iterable[Fit], progress: Progress) -> Iterator[Supported]:
-    """Ever likelier explanations: quantities added one by one to where they `begin`, then what is `known`.
+    """Ever more likely explanations: from `begin` with quantities added one by one, then from the `known` fits.
 
-    Beside a discrepancy as large as all that is missing, a descent sees little of an effect: what is known to come
-    nearest without one goes on where it is likelier than all that was added, on samples that validate as well: as where
-    many numbers of a description are off. It does not begin there: what is nearest of its size may be what bends most,
-    and few quantities lead from there to what is there.
+    With a discrepancy as large as the whole error, a descent detects little of an effect. So the known fits with the
+    lowest squared error are tried as well. One of them is taken further if it is more likely than every explanation so
+    far, on the validation samples too. That happens where many numbers of a description are wrong. The search does not
+    begin there: the best fit of a size may be the one that adapts most. Few quantities lead from it to the true
+    explanation.
     """
     data, nominal, reached = weighing.data, weighing.nominal, begin
     for told in _added(weighing, begin, progress):
@@ -90,10 +92,10 @@ def _approached(weighing: Weighing, begin: Scored, known: Iterable[Fit], progres
 
 
 def _added(weighing: Weighing, begin: Scored, progress: Progress) -> Iterator[Supported]:
-    """Explanations with one quantity more each, until one more helps no further.
+    """Explanations with one quantity more each, until one more does not help.
 
-    Each is the one that makes the recordings likeliest with its own most likely discrepancy and values that actuators
-    have: an effect that bends to a part of what remains gains no more than that part.
+    Each is the one that makes the recordings most likely, with its own most likely discrepancy and plausible values. An
+    effect that adapts to a part of the remainder gains no more than that part.
     """
     reached = begin
     for _ in range(MOST):
@@ -106,16 +108,17 @@ def _added(weighing: Weighing, begin: Scored, progress: Progress) -> Iterator[Su
 
 
 def _likeliest(before: Supported, now: Supported, reached: Scored) -> Supported:
-    """Of what unseen samples have confirmed `before` and `now` that which makes the recordings likelier.
+    """The more likely one of the confirmed explanations `before` and `now`.
 
-    An effect that the likelier explanation `reached` does without stood for what is in that: it is no longer told.
+    `before` is dropped if it has an effect that the more likely explanation `reached` does without: this effect only
+    replaced something in `reached`.
     """
     stands = set(before.scored.fit.explanation.effects) <= set(reached.fit.explanation.effects)
     return min((before, now) if stands else (now,), key=lambda each: each.scored.cost)
 
 
 def _nearest(known: Iterable[Fit]) -> list[Fit]:
-    """Of each size the fit that leaves least, without a change in the middle."""
+    """The fit with the lowest chi2 of each size above 0, without a change in mid-recording."""
     best: dict[int, Fit] = {}
     for fit in known:
         size = fit.explanation.size
@@ -125,19 +128,19 @@ def _nearest(known: Iterable[Fit]) -> list[Fit]:
 
 
 def _price(reached: Scored) -> float:
-    """-2 log likelihood, and what names a quantity for each."""
+    """-2 log likelihood, plus `SIGNIFICANT` for each quantity."""
     return reached.cost + SIGNIFICANT * reached.fit.explanation.size
 
 
 def _likelier(one: Scored, other: Scored) -> bool:
-    """Whether each quantity that one has more than the other makes the recordings likelier by what names one."""
+    """Whether one explanation is as likely as the other or more, when each quantity costs `SIGNIFICANT`."""
     return _price(one) <= _price(other)
 
 
 def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
-    """`beside`, or with a `fit` of plausible values that makes the recordings likelier by as much as names a quantity.
+    """`beside`, or with a `fit` of plausible values if that is more likely by at least `SIGNIFICANT`.
 
-    Quantities that are added one by one may miss what a search has found together.
+    Adding quantities one by one may miss a combination that a search has found.
     """
     reached = weighing.settled(fit)
     if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, weighing.data, weighing.nominal):
@@ -149,7 +152,7 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
 def confirmed_beside(fit: Fit, weighing: Weighing, progress: Progress) -> bool:
     """Whether unseen samples confirm all effects of a `fit`, with plausible values, however little they explain.
 
-    None of them may be what drifting parameters could stand for.
+    Drifting parameters must not be able to replace any of these effects.
     """
     told = weighing.weighed(weighing.settled(fit))
     effects = {quantity: weight for quantity, weight in told.weights.items() if isinstance(quantity, Variant)}
@@ -159,10 +162,10 @@ def confirmed_beside(fit: Fit, weighing: Weighing, progress: Progress) -> bool:
 
 
 def told_apart(named: Supported, weighing: Weighing, progress: Progress) -> Supported:
-    """What of `named` may be named, each effect with what could stand in its place.
+    """The part of `named` that may be named, each effect with its possible replacements.
 
-    Where drifting parameters, no more than an effect has free numbers, could stand for it they are told: of equals that
-    with fewer effects is taken.
+    If drifting parameters can replace an effect, and are no more than its free numbers, they are reported. Of two ties,
+    the one with fewer effects is taken.
     """
     weights, drifts = dict(named.weights), set(drifting(weighing.nominal))
     for quantity, weight in weights.items():
@@ -176,10 +179,11 @@ def told_apart(named: Supported, weighing: Weighing, progress: Progress) -> Supp
 
 
 def with_play(named: Supported, reached: Fit, data: Data, nominal: Model) -> Supported:
-    """`named` and the play of the sensor that shows at reversals, beside `named` as beside what was `reached`.
+    """`named` with the play of the sensor added, if reversals show it both beside `named` and beside `reached`.
 
-    A simulation that is wrong by more than the play turns round elsewhere, and a play does it no good. A spring that
-    gives way lags behind at reversals too: what stands in for it may not be named, but takes that play away.
+    A simulation that is wrong by more than the play reverses elsewhere, and a play does not improve it. A spring that
+    yields lags behind at reversals too. The quantity that replaces such a spring may not be named, but it removes the
+    apparent play.
     """
     own = named.scored.fit
     play = play_at_reversals(data, own)
@@ -191,15 +195,15 @@ def with_play(named: Supported, reached: Fit, data: Data, nominal: Model) -> Sup
 
 
 def _shows(play: Play, fit: Fit, data: Data) -> bool:
-    """Whether a fit has such a play, or leaves one."""
+    """Whether a fit has such a play, or its residual shows one."""
     again = play_at_reversals(data, fit)
     return play.variant.effect in fit.explanation.effects or (again is not None and again.gain >= PROMISING)
 
 
 def _rivals(named: Supported, effect: Variant, weighing: Weighing, progress: Progress) -> dict[tuple[str, ...], Scored]:
-    """What could stand in the place of an effect, by name: what is less likely by less than would name it.
+    """The possible replacements of an effect, by name: those less likely than it by less than `SIGNIFICANT`.
 
-    One other quantity, or two drifting parameters; the likeliest first.
+    A replacement is one other quantity, or two drifting parameters; the most likely comes first.
     """
     rest = weighing.lacking(named.scored, effect)
     own = set(quantities(rest.fit.explanation))

@@ -1,7 +1,7 @@
-"""Parameters that drift together: as many as recordings tell apart, and as few as do the same.
+"""Parameters that drift together: as many as recordings distinguish, then as few as fit equally well.
 
-A description of guesses is off in more numbers than can be added one by one, and what is added before they are right
-stands for them.
+A description made of guesses is wrong in more numbers than can be added one by one. A quantity that is added before
+they are right makes up for their errors.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, without
 
 INDEPENDENT = 1e-3
-"""A parameter whose mark in the signal, beyond those of the others, is smaller than this share of its own adds none.
-Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
+"""Share of a parameter's change of the signal that the other parameters cannot make; below it, the parameter adds
+nothing. Derived: one-sided differences of 0.05 % show an exact tie as up to 5e-4."""
 FEWER = 4
-"""Combinations of as many drifting parameters that are fitted in the place of more, the best by a linear step. Work:
-each is a whole fit; not varied."""
+"""Number of combinations of fewer drifting parameters that are fitted at each count, the best by a linear step. Work:
+each is a full fit; not varied."""
 Begun = tuple[Explanation, dict[str, float]]
 """An explanation and the values from which it is fitted."""
 
 
 def drift_together(attempts: Attempts) -> bool:
-    """Let all drift that recordings tell apart; whether something accounts for all then.
+    """Let all parameters drift that recordings distinguish; gives whether an adequate explanation is found.
 
-    Effects are added to that, while each leaves far less. Then as few drift as have to.
+    Effects are added as long as each leaves far less error. Then only as many parameters drift as have to.
     """
     best = attempts.keep(recalibrated(attempts, attempts.pool))
     while not adequate(best):
@@ -44,9 +44,9 @@ def drift_together(attempts: Attempts) -> bool:
 
 
 def recalibrated(attempts: Attempts, pool: Executor) -> Fit:
-    """The nominal structure with as many of its parameters re-estimated as the recordings tell apart.
+    """The nominal structure with as many of its parameters re-estimated as the recordings distinguish.
 
-    From nominal values and from what leaves least so far where parameters drift.
+    The fits start from the nominal values and from the best fit so far with drifts only.
     """
     estimator = attempts.whole
     explanation = drifting_apart(estimator, attempts.drifts)
@@ -56,13 +56,13 @@ def recalibrated(attempts: Attempts, pool: Executor) -> Fit:
 
 
 def _with_an_effect(seed: Fit, attempts: Attempts) -> list[Fit]:
-    """Whole fits of the effects that are most promising beside `seed`."""
+    """Full fits of the effects that are most promising on top of `seed`."""
     acting = [each for each in attempts.screened(seed) if isinstance(each.addition, Variant)]
     return attempts.race(acting, most=attempts.beam.ahead // 3)
 
 
 def _with_fewer(best: Fit, attempts: Attempts) -> Fit:
-    """Fit the effects of what accounts for all with ever fewer drifts, as long as these do; the last that does."""
+    """Fit the effects of an adequate `best` with ever fewer drifts; gives the last fit that is adequate."""
     for count in range(len(best.explanation.drifted) - 1, -1, -1):
         begins = drifting_fewer(best, attempts.whole, attempts.drifts, count)[:FEWER]
         fewer = min(attempts.pool.map(lambda begin: attempts.add(*begin), begins), key=lambda fit: fit.chi2)
@@ -73,7 +73,7 @@ def _with_fewer(best: Fit, attempts: Attempts) -> Fit:
 
 
 def _in_the_place_of_two(best: Fit, attempts: Attempts) -> None:
-    """Fit what is most promising in the place of any two drifts of `best`: one effect may do what both do."""
+    """Fit the most promising additions in place of any two drifts of `best`: one effect may do what both do."""
     pairs = list(itertools.combinations(best.explanation.drifted, 2))
     if best.explanation.size > 2 and pairs:
         rests = (without(without(best.explanation, one), other) for one, other in pairs)
@@ -81,7 +81,7 @@ def _in_the_place_of_two(best: Fit, attempts: Attempts) -> None:
 
 
 def drifting_apart(estimator: Estimator, drifts: Sequence[str]) -> Explanation:
-    """As many of the `drifts` as the recordings tell apart, by their marks in the signal at nominal values."""
+    """As many of the `drifts` as the recordings distinguish, by their changes of the signal at nominal values."""
     jacobian = estimator.at(Explanation(tuple(drifts))).solution.jacobian
     marks = jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), 1e-12)
     _, triangle, order = qr(marks, mode="economic", pivoting=True)
@@ -91,11 +91,11 @@ def drifting_apart(estimator: Estimator, drifts: Sequence[str]) -> Explanation:
 
 
 def drifting_fewer(fit: Fit, estimator: Estimator, drifts: Sequence[str], count: int) -> list[Begun]:
-    """The effects of a `fit` with only so many of the `drifts`, the best combinations first.
+    """The effects of a `fit` with only `count` of the `drifts`, the best combinations first.
 
-    All are asked, by one linear step at the values of the fit: what its residual grows by where the other parameters
-    are nominal again, and those in the combination, and the effects, make up for it. In logarithms that is exact for
-    parameters that the recordings tell only by their products and ratios.
+    All combinations are evaluated by one linear step at the values of the fit. The other parameters return to nominal;
+    those in the combination, and the effects, make up for it. The combination with the least growth of the residual is
+    best. In logarithms this is exact for parameters that the recordings show only by their products and ratios.
     """
     everything = Explanation(tuple(drifts), fit.explanation.variants)
     at, coordinates = estimator.at(everything, fit.values), estimator.coordinates(everything)

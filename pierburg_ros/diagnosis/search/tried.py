@@ -1,24 +1,24 @@
-"""What is being tried, and how far that is: a text for who only prints it, with numbers for who draws a bar."""
+"""Progress reports: a text for a caller that only prints it, with numbers for a caller that draws a bar."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Progress = Callable[[str], None]
-"""Told what is being tried, as a text or, where more is known, as `Tried`."""
+"""A function that is given what is being tried, as a text or, where more is known, as `Tried`."""
 
 
 class Tried(str):
     """What is being tried, as a text."""
 
     stage: str
-    """What it belongs to, as in: missing physics."""
+    """The stage it belongs to, as in: missing physics."""
     done: int | None
-    """Pieces of work of this stage so far; None: not counted."""
+    """Pieces of work done so far in this stage; None: not counted."""
     about: int | None
-    """How many there will be as far as is known now; None: not known."""
+    """How many there will be, as far as is known now; None: not known."""
     best: str
-    """The best so far in words; empty where nothing is known yet."""
+    """The best result so far in words; empty if nothing is known yet."""
     left: float | None
     """Time [s] that is left at least; None: no limit."""
 
@@ -38,7 +38,7 @@ class Tried(str):
 
 
 def staged(progress: Progress, stage: str, about: int | None = None) -> Progress:
-    """`progress` that says of what is tried that it belongs to `stage`, and counts it."""
+    """`progress` that marks what is tried with its `stage`, and counts it."""
     done = 0
 
     def tell(what: str) -> None:

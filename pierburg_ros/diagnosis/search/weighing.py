@@ -1,4 +1,4 @@
-"""What speaks for each quantity of an explanation, beside what remains, and which of them may stay."""
+"""The evidence for each quantity of an explanation beside a remainder, and which of the quantities may stay."""
 
 from __future__ import annotations
 
@@ -19,34 +19,35 @@ from pierburg_ros.estimation.refinement import lowered
 from pierburg_ros.plant import Model
 
 CONFIRMED = 0.5
-"""Share of the gain of a quantity, from the samples that train to as many that validate, that these must show as well.
-Derived: halfway between what fits the training samples alone, none of it, and what is there, all of it."""
+"""Share of a quantity's gain on the training samples, scaled to the number of validation samples, that these must show
+as well. Derived: halfway between a quantity that fits the training samples alone (none of the gain) and one that is
+there (all of it)."""
 EXPLAINS = 0.55
-"""Share of the mean square, of what a quantity moves and of what remains, that it must move (`moved.py`). Measured: in
-n = 61 trials, beside a remainder, of that alone or of what is outside the catalogue, 24 of the 29 right names that
-carry their part and are confirmed reach 0.65 or more, in explanations on the way 0.55, the other five 0.4 or less; six
-of 20 wrong ones stay below."""
+"""Least share of a quantity in the mean square of its own signal and the remainder together (`moved.py`). Measured: the
+n = 61 trials have effects beside a remainder, a remainder alone, or something outside the catalogue. Of the 29 right
+names that carry their part and are confirmed, 24 reach 0.65 or more, and 0.55 in intermediate explanations. The other
+five reach 0.4 or less. Six of 20 wrong ones stay below."""
 CARRIES = 1.0 / 3.0
-"""Share of the evidence against the model without any effect that one carries at least. Measured: in the same n = 61
-trials 31 of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
+"""Least share of the evidence against the model without any effect that an effect has to carry. Measured: in the same n
+= 61 trials, 31 of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
 ALONE = 0.8
-"""Confidence of a name beside a remainder that nothing else comes near. Measured: Laplace's rule of succession, since
-of effects put into real recordings all of n = 3 such names were right. With one to three rivals three of six were:
-about the share of one among equals."""
+"""Confidence in a name beside a remainder if nothing else fits almost as well. Measured: Laplace's rule of succession,
+since all of n = 3 such names were right for effects put into real recordings. With one to three rivals, three of six
+were right: about the share of one among equals."""
 
 
 @dataclass(frozen=True)
 class Weight:
-    """What speaks for a quantity, in -2 log likelihood: what leaving it out costs, `gain`, and what is `left` with it.
+    """Evidence for a quantity, in -2 log likelihood: `gain` is the cost of leaving it out, `left` the misfit with it.
 
-    Left is how much less likely the residual is than white noise of the sensor's size. `unseen` is what leaving it out
-    costs on samples that validate, None where they were asked otherwise; of a quantity that is there as much as they
-    are `expected` to show: its gain by their number over that of those that train. `explains` is the share of the mean
-    square that it moves, beside what remains, None where that was not asked; `plausible`: its values are such as 95 of
-    100 actuators have. `instead` is what gains almost as much in its place: an effect, or one or two drifting
-    parameters. `by_rule` is the share of what a controller's rule leaves that goes with it, None where no controller
-    vouches for it (`witness.py`). `bare` is what is left where none of several effects acts and what drifts stays as it
-    is, 0 where it is the only one.
+    `left` is how much less likely the residual is than white noise of the sensor's size. `unseen` is the cost of
+    leaving the quantity out on the validation samples, None if these were not evaluated in this way. A quantity that is
+    there has the `expected` cost on them: its gain by their number over that of the training samples. `explains` is its
+    share in the mean square of its own signal and the remainder, None if that was not evaluated. `plausible`: its
+    values are such as 95 of 100 actuators have. `instead` is what gains almost as much in its place: an effect, or one
+    or two drifting parameters. `by_rule` is the share of the error of a controller's rule that the quantity removes,
+    None if no controller confirms it (`witness.py`). `bare` is the misfit if none of several effects acts and the
+    drifts stay as they are, 0 unless there are several.
     """
 
     gain: float
@@ -61,23 +62,23 @@ class Weight:
 
     @property
     def carried(self) -> float:
-        """Share of the evidence against the model without any effect, or without this quantity: 0 to 1."""
+        """Share, 0 to 1, of the evidence against the model without any effect, or without this quantity."""
         gain, left = max(self.gain, 0.0), max(self.left, 0.0)
         return gain / max(gain + left, self.bare, 1e-9)
 
     @property
     def confirmed(self) -> bool:
-        """Whether samples that no fit has seen say the same."""
+        """Whether samples that no fit has used confirm the quantity."""
         return self.unseen is None or self.unseen >= CONFIRMED * self.expected
 
     @property
     def believed(self) -> bool:
-        """Whether it explains enough with values that an actuator has, and unseen samples confirm it."""
+        """Whether it explains enough, with values that an actuator has, and unseen samples confirm it."""
         return (self.explains is None or self.explains >= EXPLAINS) and self.plausible and self.confirmed
 
     @property
     def confidence(self) -> float:
-        """How far it is believed: of equals each is as likely as another; what was asked otherwise by its share."""
+        """Confidence in the quantity, 0 to 1: ties share it equally; without unseen samples it is the share carried."""
         if self.by_rule is not None:
             return self.by_rule / (1 + len(self.instead))
         return self.carried if self.unseen is None else ALONE / (1 + len(self.instead))
@@ -87,8 +88,8 @@ class Weight:
 class Supported:
     """An explanation with its likelihood, and the weight of each of its quantities.
 
-    `nominal` is the model that it changes: the nominal one, on a shaft that goes round with the lesser orders of the
-    torque over a turn.
+    `nominal` is the model that it changes: the nominal one. For a shaft that goes round, it also has the lesser orders
+    of the torque over a turn.
     """
 
     nominal: Model
@@ -102,9 +103,10 @@ def idle(quantity: Quantity, weight: Weight) -> bool:
 
 
 def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
-    """Whether a quantity gains or explains too little, or gains nothing on unseen samples, as what acts only once.
+    """Whether a quantity gains or explains too little, is not plausible, or unseen samples do not confirm it.
 
-    A parameter may drift a little beside an effect; an effect has to carry its part.
+    An effect that acts only once is not confirmed either. A parameter may drift a little beside an effect, but an
+    effect has to carry its part.
     """
     if idle(quantity, weight) or not weight.believed:
         return True
@@ -114,8 +116,9 @@ def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
 class Weighing:
     """Weighs explanations of some recordings that change a `nominal` model, each fitted with its own discrepancy.
 
-    What was fitted from the values of a larger explanation is fitted again only from values that are likelier as they
-    are. What was reached from smaller ones is: it may have stopped in the place of what was added since.
+    An explanation fitted from the values of a larger one is fitted again only from values that are already more likely
+    than that fit. An explanation reached only from smaller ones is always fitted again: it may have stopped where it
+    made up for a quantity that was added since.
     """
 
     def __init__(self, data: Data, nominal: Model, pool: Executor) -> None:
@@ -125,17 +128,17 @@ class Weighing:
         self._searched: set[Explanation] = set()
 
     def settled(self, fit: Fit) -> Scored:
-        """A fit with its own discrepancy, or the likeliest so far of the same explanation."""
+        """A fit with its own discrepancy, or the most likely one so far of the same explanation."""
         return self._kept(settled(self.data, self.nominal, fit))[0]
 
     def needed(self, reached: Scored) -> Supported:
-        """What was reached without what it does not need, weighed."""
+        """The explanation reached without the quantities that it does not need, weighed."""
         return self.thinned(self.weighed(reached), idle)
 
     def heard(self, told: Supported) -> Supported:
-        """What of an explanation unseen samples confirm.
+        """The part of an explanation that unseen samples confirm, weighed.
 
-        The last effect is not given up before its cost was searched for other local minima, if its events jump.
+        The last effect is given up only after a search for other local minima, if its cost has many.
         """
         while (rest := self._rest(told, unconfirmed)) is not None:
             reached, own = told.scored, told.scored.fit.explanation
@@ -153,16 +156,16 @@ class Weighing:
         return told
 
     def _rest(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Scored | None:
-        """The explanation without the weakest of the quantities that are `out`, None where none is.
+        """The explanation without the weakest of the quantities that are `out`, None if there is none.
 
-        What cannot be left out, since the others make no model without it, stays.
+        A quantity stays if the others make no model without it.
         """
         leaving = {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}
         rests = (self.lacking(told.scored, quantity) for quantity in sorted(leaving, key=lambda one: leaving[one]))
         return next((rest for rest in rests if rest.fit.explanation != told.scored.fit.explanation), None)
 
     def weighed(self, reached: Scored) -> Supported:
-        """The weight of each quantity: what the others, fitted again with their own discrepancy, leave without it."""
+        """The explanation with a weight for each quantity, from a fit of the others with their own discrepancy."""
         best, validation = self._kept(reached)
         explanation, odd = best.fit.explanation, strange(best.fit, self.data, self.nominal)
         several = len(explanation.variants) > 1
@@ -188,7 +191,7 @@ class Weighing:
         return Supported(self.nominal, best, dict(zip(changes, self.pool.map(weight, changes), strict=True)))
 
     def lacking(self, best: Scored, *out: Quantity) -> Scored:
-        """The best without some quantities, the others fitted again; itself if they cannot be left out."""
+        """`best` without some quantities, the others fitted again; `best` itself if they cannot be left out."""
         return self._lacking(best, *out)[0]
 
     def _lacking(self, best: Scored, *out: Quantity) -> tuple[Scored, float]:
@@ -205,12 +208,12 @@ class Weighing:
         return self._known[rest]
 
     def _without(self, best: Scored, *out: Quantity) -> Scored:
-        """The best without some quantities, the others as they are: fitted again, a drift may stand for an effect."""
+        """`best` without some quantities, the others unchanged: fitted again, a drift might replace an effect."""
         rest = functools.reduce(without, out, best.fit.explanation)
         return scored(self.data, Estimator(self.data, self.nominal).at(rest, best.fit.values))
 
     def _kept(self, reached: Scored) -> tuple[Scored, float]:
-        """The likeliest so far of the same explanation, and what it says of samples that validate."""
+        """The most likely one so far of the same explanation, and its `unseen` cost on the validation samples."""
         explanation = reached.fit.explanation
         known = self._known.get(explanation)
         if known is None or reached.cost < known[0].cost:

@@ -1,13 +1,14 @@
-"""A proportional controller as a second witness of the angle: it says what the sensor and the log have done to it.
+"""A proportional controller as a second witness of the angle: it shows what the sensor and the log did to it.
 
-Its duty follows from setpoint and angle by one rule that is nearly exact, whatever physics the actuator lacks. So the
-duty shows the angle on which the controller acted. Where the recorded angle trails behind that, its sensor has a lag or
-a play that the controller does not see; where the duty came before the setpoint and the angle that it follows from, it
-takes effect later than it was logged; where it steps over a band around 0, its controller makes up for a dead band. No
-simulation has to be right for this. It tells nothing of a sensor whose faults the controller shares.
+Its duty follows from setpoint and angle by one rule, which is nearly exact whatever physics the model lacks. So the
+duty shows the angle on which the controller acted. If the recorded angle trails behind that angle, its sensor has a lag
+or a play that the controller does not see. If the duty precedes the setpoint and the angle that it follows from, it
+takes effect later than it was logged. If the duty steps over a band around 0, its controller makes up for a dead band.
+No simulation has to be right for this. The rule says nothing of a sensor whose faults the controller shares.
 
-A controller with an integral is none of these: beside a lag its rule seems to explain most of what it leaves, but not
-all. One with a derivative looks like a proportional one behind a lag, exactly; there the motion decides.
+A controller with an integral is none of these cases. With a lag, its rule seems to explain most of the error that it
+leaves otherwise, but not all. A controller with a derivative looks exactly like a proportional one behind a lag; there
+the motion decides.
 """
 
 from __future__ import annotations
@@ -33,29 +34,32 @@ from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Channel
 
 TOLD = 0.75
-"""Share of the mean square of what the rule leaves that has to go with an effect: the error of the rule halves.
-Measured: 0.89 to 0.9999 goes with effects put into a servo's recordings (n = 15), and 0.54 at most with what is found
-in the untouched ones beyond two of their intervals (n = 8)."""
+"""Share of the mean square of the rule's error that an effect has to remove: the error of the rule halves. Measured:
+effects put into a servo's recordings remove 0.89 to 0.9999 (n = 15). Those found in the untouched recordings beyond two
+of their sample intervals remove 0.54 at most (n = 8)."""
 INTERVALS = 2
-"""Intervals of the samples by which controller and log may be apart, and beyond which a time is told. Derived: the
+"""Sample intervals by which controller and log may be apart; only times beyond that are reported. Derived: the
 controller acts up to one before or after the sample, and the sample is read up to one after."""
 FAR = 10.0
-"""How far beyond what is plausible a strength is looked for. Work: a wider range takes longer; not varied."""
-TRIED = 120
-"""Strengths that are tried over that range, some percent apart. Work: each takes some tenths of a millisecond."""
-FEWEST = 100
-"""Samples at which the duty is free, at least. Chosen: half a second of a servo's, which tell three numbers; not
+"""Factor beyond the plausible range up to which a strength is searched. Work: a wider range takes longer; not
 varied."""
+TRIED = 120
+"""Number of strengths that are tried over that range, some percent apart. Work: each takes some tenths of a
+millisecond."""
+FEWEST = 100
+"""Least number of samples at which the duty is free. Chosen: half a second of a servo's, which determine three numbers;
+not varied."""
 SETTLED = 8
-"""Steps in which play and rule are fitted in turn. Work: each halves what is left to do or better; not varied."""
+"""Number of steps in which play and rule are fitted in turn. Work: each step at least halves what is left to correct;
+not varied."""
 
 
 @dataclass(frozen=True)
 class Witness:
-    """An effect at the strength that the rule tells, and the mean squares [rad^2] that the rule leaves.
+    """An effect at the strength that the rule shows, and the mean squares [rad^2] that the rule leaves.
 
-    The strength lies `between` two values, and their geometric mean stands for it. `without` it and `beside` it.
-    `as_well` are effects that the rule tells no worse.
+    The strength lies `between` two values, and their geometric mean is taken. The rule leaves `without` if the effect
+    does not act, and `beside` if it does. `as_well` are effects with which the rule leaves less than twice as much.
     """
 
     variant: Variant
@@ -66,12 +70,12 @@ class Witness:
 
     @property
     def share(self) -> float:
-        """Share of the mean square without it that goes with it."""
+        """Share of the mean square without the effect that the effect removes."""
         return 1.0 - self.beside / self.without
 
     @property
     def estimates(self) -> dict[str, Estimate]:
-        """The strength by its dotted name."""
+        """The strength with its interval, by its dotted name."""
         ((name, value),) = self.variant.fixed
         low, high = self.between
         known = high - low < 2.0 * HALF_KNOWN * value
@@ -79,14 +83,15 @@ class Witness:
 
 
 Left = Callable[[float], Signal]
-"""What the rule leaves of the recorded angle [rad] beside an effect of a strength, shape (free samples,)."""
+"""Gives the error [rad] of the rule with an effect of a strength, shape (free samples,)."""
 
 
 def witnessed(signals: Signals, nominal: Model) -> Witness | None:
-    """What the rule of a proportional controller tells of the sensor or the log of its input; None where it is silent.
+    """The effect in the sensor or the input's log that a proportional controller's rule shows; None if it shows none.
 
-    It has to explain most of what the rule leaves otherwise, and a time has to be longer than sampling tells. The rule
-    beside it has to be exact: of the loop's error, which the duty follows from, next to nothing is left.
+    The effect has to remove most of the error that the rule leaves otherwise, and a lag or delay has to be longer than
+    sampling can show. With the effect, the rule has to be exact: it leaves next to nothing of the loop's error, from
+    which the duty follows.
     """
     if signals.setpoints is None or signals.quantity == "speed":
         return None
@@ -102,7 +107,7 @@ def witnessed(signals: Signals, nominal: Model) -> Witness | None:
 
 
 def _told(effect: Effect, loop: _Loop, nominal: Model) -> Witness | None:
-    """What the rule tells of an effect, without an upper end where it tells none; None where it can tell nothing."""
+    """An effect as the rule shows it, with an infinite upper end if the rule gives none; None if it shows nothing."""
     name, left, least = _way(effect, loop)
     if left is None:
         return None
@@ -121,7 +126,7 @@ def _told(effect: Effect, loop: _Loop, nominal: Model) -> Witness | None:
 
 
 def _way(effect: Effect, loop: _Loop) -> tuple[str, Left | None, float]:
-    """The strength by which an effect shows in the rule, what the rule leaves beside it, and the least that is told."""
+    """Name of the strength by which an effect shows in the rule, the rule's error with it, and the least reported."""
     if effect.lag is not None:
         return effect.lag, loop.lagging, INTERVALS * loop.interval
     if effect.dead_time is not None:
@@ -135,10 +140,10 @@ def _way(effect: Effect, loop: _Loop) -> tuple[str, Left | None, float]:
 
 @dataclass(frozen=True)
 class _Loop:
-    """A closed loop: angle = setpoint + p duty + q, for the p and q that suit best; all of shape (samples,).
+    """A closed loop: angle = setpoint + p duty + q, for the p and q that fit best; signals of shape (samples,).
 
-    `free` are samples at which the duty is neither limited nor without effect, `interval` [s] that between samples.
-    Controller and log may be some samples apart, by as much as suits best.
+    `free` are samples at which the duty is neither limited nor without effect. `interval` [s] is the time between
+    samples. Controller and log may be some samples apart; the offset that fits best is taken.
     """
 
     time: Signal
@@ -150,7 +155,7 @@ class _Loop:
 
     @staticmethod
     def of(signals: Signals, nominal: Model, setpoints: Channel) -> _Loop | None:
-        """The loop of some signals; None where too little of it moves freely."""
+        """The loop of some signals; None if too few samples are free, or a signal is constant there."""
         free = free_of_limits(signals)
         angle, setpoint = decoded(nominal, signals.measured, signals.quantity), setpoints.at(signals.time)
         command = Channel(signals.inputs.time, signals.inputs.command)
@@ -163,30 +168,30 @@ class _Loop:
 
     @property
     def error(self) -> float:
-        """Variance of how far the recorded angle is from the setpoint [rad^2]."""
+        """Variance of the recorded angle minus the setpoint [rad^2]."""
         return float(np.var((self.angle - self.setpoint)[self.free]))
 
     @property
     def exact(self) -> bool:
-        """Whether the rule leaves no more than rounding to single precision, which tells nothing."""
+        """Whether the rule leaves no more than rounding to single precision, which shows nothing."""
         return _mean_square(self.undisturbed) <= float(np.finfo(np.float32).eps) ** 2 * self.error
 
     @cached_property
     def duties(self) -> list[Signal]:
-        """The duty as it was some samples before and after."""
+        """The duty as it was some samples before and after, each of shape (samples,)."""
         return [self.command.at(self.time - by * self.interval) for by in range(-INTERVALS, INTERVALS + 1)]
 
     @cached_property
     def undisturbed(self) -> Signal:
-        """What is left where nothing acts."""
+        """Error [rad] of the rule without an effect, shape (free samples,)."""
         ones = np.ones_like(self.time)
         return _least(_left(self.angle - self.setpoint, duty, ones, self.free) for duty in self.duties)
 
     def delayed(self, time: float) -> Signal:
-        """What is left where the duty acts a `time` [s] after it was logged.
+        """Error [rad] of the rule if the duty acts a `time` [s] after it was logged, shape (free samples,).
 
-        It was computed between this sample and the last, half an interval before on average. Where too few samples
-        tell, it is what is left undisturbed.
+        The duty was computed between this sample and the last, half an interval before on average. If too few samples
+        are free, the result is that without an effect.
         """
         then = self.time - max(time - 0.5 * self.interval, 0.0)
         free: Flags = np.interp(then, self.time, self.free) == 1.0
@@ -195,13 +200,13 @@ class _Loop:
         return _left(self.angle - self.setpoint, self.command.at(then), np.ones_like(self.time), free)
 
     def stepping(self, width: float) -> Signal:
-        """What is left where the duty steps over a band of a `width` around 0."""
+        """Error [rad] of the rule if the duty steps over a band of a `width` around 0, shape (free samples,)."""
         ones = np.ones_like(self.time)
         beyond = (np.copysign(np.maximum(np.abs(duty) - width, 0.0), duty) for duty in self.duties)
         return _least(_left(self.angle - self.setpoint, duty, ones, self.free) for duty in beyond)
 
     def lagging(self, time: float) -> Signal:
-        """What is left where the recorded angle follows with a lag of a `time` [s]."""
+        """Error [rad] of the rule if the recorded angle follows with a lag of a `time` [s], shape (free samples,)."""
         ones, nothing = np.ones_like(self.angle), np.zeros_like(self.angle)
         known = self.angle - _followed(self.time, self.setpoint, self.angle, self.free, time)
         constant = _followed(self.time, ones, nothing, self.free, time)
@@ -209,7 +214,7 @@ class _Loop:
         return _least(_left(known, duty, constant, self.free) for duty in lagged)
 
     def dragged(self, width: float) -> Signal:
-        """What is left where the recorded angle is dragged along with a play of a `width` [rad]."""
+        """Error [rad] of the rule if the recorded angle has a play of a `width` [rad], shape (free samples,)."""
         return _least(self._dragged(width, duty) for duty in self.duties)
 
     def _dragged(self, width: float, duty: Signal) -> Signal:
@@ -222,12 +227,12 @@ class _Loop:
 
 
 def _least(residuals: Iterable[Signal]) -> Signal:
-    """The smallest of some residuals."""
+    """The residual with the smallest mean square."""
     return min(residuals, key=_mean_square)
 
 
 def _left(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> Signal:
-    """What two columns leave of a target, at the samples `kept`."""
+    """Residual of a target after a fit of two columns at the samples `kept`, shape (kept samples,)."""
     by, offset = _weights(target, by_duty, constant, kept)
     return np.asarray((target - by * by_duty - offset * constant)[kept])
 
@@ -237,9 +242,9 @@ def _mean_square(residual: Signal) -> float:
 
 
 def _weights(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> tuple[float, float]:
-    """Weights of two columns by least squares; of a duty that tells no more than the constant it is 0.
+    """Weights of two columns by least squares; 0 for a duty that adds nothing to the constant.
 
-    By Gram-Schmidt, for it is asked thousands of times: a decomposition takes twenty times as long.
+    They are computed thousands of times, so by Gram-Schmidt: a decomposition takes twenty times as long.
     """
     known, duty, other = target[kept], by_duty[kept], constant[kept]
     square = float(other @ other)
@@ -251,7 +256,7 @@ def _weights(target: Signal, by_duty: Signal, constant: Signal, kept: Flags) -> 
 
 @kernel
 def _followed(time: Signal, values: Signal, shown: Signal, free: Flags, lag: float) -> Signal:
-    """`values` behind a first-order `lag` [s], straight between samples; where they are not `free`, what is `shown`."""
+    """`values` after a first-order `lag` [s], linear between samples, `shown` where not `free`; shape (samples,)."""
     lagged = shown.copy()
     lagged[0] = values[0] if free[0] else shown[0]
     for k in range(1, values.size):
@@ -266,7 +271,7 @@ def _followed(time: Signal, values: Signal, shown: Signal, free: Flags, lag: flo
 
 @kernel
 def _dragged(values: Signal, shown: Signal, free: Flags, half: float) -> Signal:
-    """What `values` drag along with a play of twice `half`; where they are not `free`, what is `shown`."""
+    """What `values` drag along with a play of twice `half`, `shown` where not `free`; shape (samples,)."""
     magnet = shown.copy()
     for k in range(1, values.size):
         if free[k]:

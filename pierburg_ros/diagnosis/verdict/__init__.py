@@ -1,1 +1,1 @@
-"""What a search amounts to: the verdict, how sure each effect is, and what cannot be told apart."""
+"""The result of a search: the verdict, how sure each effect is, and what cannot be distinguished."""

@@ -1,4 +1,4 @@
-"""What a search amounts to: the verdict, the model, and the fits it is held against. Fits nothing itself."""
+"""The result of a search: the verdict, the model, and the fits it is compared with. Nothing is fitted here."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from pierburg_ros.estimation.likelihood import OFF_GRID
 from pierburg_ros.plant import Model
 
 FEWEST = 2.0**-8
-"""Step of a converter, as a share of what is large for the sensor, from which it is named although something remains.
-Chosen: eight bits, fewer than converters in use have; finer steps are far below what remains. Not varied."""
+"""Smallest step of a converter that is named beside a remainder, as a share of what is large for the sensor. Chosen:
+eight bits, fewer than converters in use have; finer steps are far below the remainder. Not varied."""
 
 
 @dataclass(frozen=True)
 class Support:
-    """How far an effect is believed, between 0 and 1, and the numbers that speak for it.
+    """How far an effect is believed, between 0 and 1, and the numbers that support it.
 
-    `without` is the best explanation without it, of as many quantities or fewer, and `gain` what that lacks in chi2, in
-    effective samples; `left_out` what recordings left out of the fit say; `weight` what it carries where something
-    remains. All are None where the effect is seen in the samples themselves.
+    `without` is the best explanation without it, of as many quantities or fewer. `gain` is by how much that fits worse
+    in chi2, in effective samples. `left_out` is the evidence of recordings left out of the fit. `weight` is the
+    effect's weight beside a remainder. All are None where the effect is detected in the samples themselves.
     """
 
     confidence: float
@@ -44,10 +44,10 @@ class Support:
 
 @dataclass(frozen=True)
 class Conclusion:
-    """The chosen fit with its alternatives, and the nominal and recalibrated ones it is held against.
+    """The chosen fit with its alternatives, and the nominal and recalibrated fits it is compared with.
 
-    `final` is the chosen explanation with its last values, `estimates` with their intervals; `supports` goes by the ids
-    of its effects. `shape` is what is left as a torque, if that is confirmed.
+    `final` is the chosen explanation with its last values, `estimates` holds their intervals, and `supports` goes by
+    the ids of its effects. `shape` is the rest as a torque, if that is confirmed.
     """
 
     verdict: Verdict
@@ -67,7 +67,7 @@ class Conclusion:
 
 
 def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
-    """What a search amounts to, with what is said of the `rest` where nothing accounts for all."""
+    """The conclusion of a search, with what is known of the `rest` where no explanation accounts for all."""
     verdict, nominal = verdict_on(found.chosen), found.fits[Explanation()]
     if rest is not None:
         supports = {effect: _by_recordings(left_out) for effect, left_out in rest.left_out.items()}
@@ -96,13 +96,13 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
 
 
 def _tied(base: Fit, weights: Mapping[str, Weight]) -> list[Alternative]:
-    """What may stand for each effect of `base` beside what remains."""
+    """The alternatives to each effect of `base` beside a remainder."""
     own = (variant for variant in base.explanation.variants if variant.effect in weights)
     return [Alternative(variant, names) for variant in own for names in weights[variant.effect].instead]
 
 
 def verdict_on(chosen: Fit) -> Verdict:
-    """The verdict that a chosen explanation stands for."""
+    """The verdict that follows from a chosen explanation."""
     if not adequate(chosen):
         return "unexplained"
     if chosen.explanation.variants:
@@ -111,13 +111,13 @@ def verdict_on(chosen: Fit) -> Verdict:
 
 
 def _coarse(found: Found) -> float:
-    """The step of the converter [measured unit] if that is worth a name beside what remains, otherwise 0."""
+    """The step of the converter [measured unit] if it is worth a name beside a remainder, otherwise 0."""
     step, known = found.data.step, found.nominal.values[STEP]
     return step if step > max(FEWEST * found.data.scales.reading, (1.0 + OFF_GRID) * known) else 0.0
 
 
 def _rounded(fit: Fit, step: float) -> Fit:
-    """`fit` with its model's samples rounded to `step`; what it leaves is that of the smooth one."""
+    """`fit` with its model's samples rounded to `step`; its residual is that of the smooth model."""
     variant = Variant(ROUNDING.id, (), ((STEP.removeprefix(f"{ROUNDING.id}."), step),))
     values = {STEP: step}
     switch = fit.switch and replace(fit.switch, model=fit.switch.model.with_values(values))
@@ -126,9 +126,10 @@ def _rounded(fit: Fit, step: float) -> Fit:
 
 
 def _by_evidence(found: Found, variant: Variant) -> Support:
-    """Weight of the explanations with an effect among all of the chosen size, each weighing exp(-chi2 / 2).
+    """Support by the weight of the explanations with an effect among all of the chosen size; each weighs exp(-chi2 /
+    2).
 
-    The gain is what the best explanation without the effect, of the same size or less, lacks.
+    The gain is by how much the best explanation without the effect, of the same size or less, fits worse.
     """
     chosen = found.chosen
     size, repetition = chosen.explanation.size, chosen.repetition
@@ -145,5 +146,5 @@ def _by_evidence(found: Found, variant: Variant) -> Support:
 
 
 def _by_recordings(left_out: LeftOut) -> Support:
-    """Few parts leave doubt: the confidence is that of Laplace's rule of succession."""
+    """Support by recordings left out; few parts leave doubt, so Laplace's rule of succession gives the confidence."""
     return Support((left_out.helped + 1) / (left_out.parts + 2), left_out=left_out)

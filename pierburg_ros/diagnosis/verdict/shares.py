@@ -1,4 +1,5 @@
-"""What part of the mismatch each named effect explains, alone and beside the others, and what remains."""
+"""The share of the mismatch that each named effect explains, alone and beside the others, and the share that
+remains."""
 
 from __future__ import annotations
 
@@ -17,13 +18,13 @@ from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
 SEEN = 0.02
-"""Squared error above the noise, as a share of the noise's own, below which there is no mismatch. Derived: the noise is
-known to about a hundredth (standard deviation 0.008, n = 300 white recordings), its square to twice that."""
+"""Squared error above the noise, as a share of the squared noise, below which there is no mismatch. Derived: the noise
+is known to about a hundredth (standard deviation 0.008, n = 300 white recordings), its square to twice that."""
 
 
 @dataclass(frozen=True)
 class Share:
-    """Of the mismatch, 0 to 1: what an effect explains `beside` the others, and `alone`."""
+    """Shares of the mismatch, 0 to 1, that an effect explains `beside` the others, and `alone`."""
 
     beside: float
     alone: float
@@ -33,8 +34,8 @@ class Share:
 class Shares:
     """The share of each named effect by id, and the share that `remains`; None where there is no mismatch.
 
-    The mismatch is the squared error above the noise of the nominal model with its parameters re-estimated, on the
-    training samples.
+    The mismatch is the squared error above the noise on the training samples, of the nominal model with its parameters
+    re-estimated.
     """
 
     effects: dict[str, Share]
@@ -42,10 +43,10 @@ class Shares:
 
 
 def shares(found: Found, conclusion: Conclusion, jobs: int | None = None, deadline: Deadline | None = None) -> Shares:
-    """What the effects of a conclusion explain, and what its model (with a residual torque if there is one) leaves.
+    """The shares that the effects of a conclusion explain, and that its model (with any residual torque) leaves.
 
-    Beside the others: what is lost where an effect is left out and the rest fitted again. Alone: what is gained where
-    it is added to the model with re-estimated parameters, without the others.
+    Beside the others: what is lost if an effect is left out and the rest is fitted again. Alone: what is gained if it
+    is added to the model with re-estimated parameters, without the others.
     """
     recalibrated, final = conclusion.recalibrated, conclusion.final
     with workers(jobs, deadline) as pool:

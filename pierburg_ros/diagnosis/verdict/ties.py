@@ -1,4 +1,4 @@
-"""What the data cannot tell apart: other explanations that fit as well as the chosen one."""
+"""What the data cannot distinguish: other explanations that fit as well as the chosen one."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from pierburg_ros.estimation.explanation import Quantity, Variant, quantities
 
 @dataclass(frozen=True)
 class Alternative:
-    """What may stand for one quantity of the chosen explanation, at equal fit."""
+    """What may replace one quantity of the chosen explanation, at equal fit."""
 
     quantity: Quantity
     instead: tuple[str, ...]
 
 
 def alternatives(found: Found) -> list[Alternative]:
-    """What may stand for each quantity of the chosen explanation: one other, or two parameters for an effect."""
+    """What may replace each quantity of the chosen explanation: one other, or two parameters for an effect."""
     own = set(quantities(found.chosen.explanation))
     alternatives = []
     for fit in tied(found.chosen, found.fits.values(), found.estimator):
