@@ -92,7 +92,7 @@ def by_weight(weight: Weight) -> str:
         share = f" It moves the signal by {times:.2g} times the remaining error."
     return (
         f"It explains {100.0 * weight.carried:.0f} % of the evidence against the model without {what}: "
-        f"{weight.gain:.3g} in -2 log likelihood, and {weight.left:.3g} is left. The remaining error counts as an error "
+        f"{weight.gain:.3g} in -2 log likelihood, and {weight.left:.3g} is left. The remaining error counts as one "
         f"that varies slowly, not as noise.{seen}{share}"
     )
 
@@ -223,7 +223,9 @@ def advice(
         for tie in parameter.indistinguishable_from:
             steps.append(_separating(name, tie, stops))
     if verdict == "unexplained":
-        steps.append("Record the same movements again, cold and warm, slow and fast, to see what the remaining error depends on.")
+        steps.append(
+            "Record the same movements again, cold and warm, slow and fast, to see what the remaining error depends on."
+        )
     steps += [f"To see {numbers.words(item.id)}, record: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
 
