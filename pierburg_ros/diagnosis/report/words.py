@@ -81,19 +81,19 @@ def by_weight(weight: Weight) -> str:
     """Why an effect is named although something remains."""
     if weight.by_rule is not None:
         return (
-            "The controller that made the input vouches for it: the input follows from setpoint and angle by one rule, "
-            f"and {100.0 * weight.by_rule:.1f} % of what that rule leaves, squared, goes with it."
+            "The controller that made the input shows it: the input follows from setpoint and angle by one rule. With "
+            f"the effect {100.0 * weight.by_rule:.1f} % of the squared error of that rule disappear."
         )
     what = "any effect" if weight.bare else "it"
-    seen = "" if weight.unseen is None else f" Samples that no fit has seen gain {weight.unseen:.3g}."
+    seen = "" if weight.unseen is None else f" On samples that no fit has seen it gains {weight.unseen:.3g}."
     share = ""
     if weight.explains is not None:
         times = math.sqrt(weight.explains / max(1.0 - weight.explains, 1e-6))
-        share = f" It moves the signal by {times:.2g} times what remains."
+        share = f" It moves the signal by {times:.2g} times the remaining error."
     return (
-        f"It carries {100.0 * weight.carried:.0f} % of the evidence against the model without {what}, counted against "
-        f"what remains and not against the noise alone: {weight.gain:.3g} in -2 log likelihood; {weight.left:.3g} is "
-        f"left.{seen}{share}"
+        f"It explains {100.0 * weight.carried:.0f} % of the evidence against the model without {what}: "
+        f"{weight.gain:.3g} in -2 log likelihood, and {weight.left:.3g} is left. The remaining error counts as one "
+        f"that varies slowly, not as noise.{seen}{share}"
     )
 
 
@@ -156,9 +156,9 @@ def summary(
     listed = ", and ".join(numbers.words(effect.id) + _or(effect.indistinguishable_from) for effect in effects)
     if verdict == "missing_physics":
         return f"The model lacks {listed}. {named}{also} {errors}"
-    helped = f" What the recordings support all the same is {listed}. {named}{also}" if effects else ""
-    left = "so far" if stopped else "that no effect of the catalogue removes"
-    return f"Something is left {left}.{helped} {errors}"
+    helped = f" The recordings support {listed} beside it. {named}{also}" if effects else ""
+    error = "An error remains so far." if stopped else "An error remains that no effect of the catalogue explains."
+    return f"{error}{helped} {errors}"
 
 
 def needless(effects: Sequence[str], text: str) -> str:
@@ -168,8 +168,8 @@ def needless(effects: Sequence[str], text: str) -> str:
     several = len(effects) > 1
     listed = numbers.words(", and ".join(effects)).capitalize()
     return (
-        f"{text} {listed} would account for what is left, but so would an error that varies slowly and that no physics "
-        f"describes: {'they are' if several else 'it is'} not named."
+        f"{text} {listed} would explain the remaining error, but so would an error that varies slowly and has no "
+        f"physics: {'they are' if several else 'it is'} not named."
     )
 
 
@@ -184,9 +184,9 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
     added = math.sqrt(max(data.noise**2 - data.sensor_noise**2, 0.0))
     hidden = added > data.sensor_noise
     if hidden:
-        warning += f" What is missing may move the signal by {added:.2g} {data.actuator.unit}, more than its noise."
+        warning += f" What is missing may move the signal by {added:.2g} {data.actuator.unit}, more than the noise."
     if verdict == "unexplained" or (hidden and verdict != "missing_physics"):
-        warning += " Nothing can be concluded: record again with fewer processes beside."
+        warning += " Nothing can be concluded: record again with fewer other processes running."
     return f"{warning} {text}"
 
 
@@ -223,7 +223,9 @@ def advice(
         for tie in parameter.indistinguishable_from:
             steps.append(_separating(name, tie, stops))
     if verdict == "unexplained":
-        steps.append("Record the same movements again, cold and warm, slow and fast, to see what the rest depends on.")
+        steps.append(
+            "Record the same movements again, cold and warm, slow and fast, to see what the remaining error depends on."
+        )
     steps += [f"To see {numbers.words(item.id)}, record: {item.record}." for item in hidden]
     return list(dict.fromkeys(steps))
 
@@ -233,7 +235,7 @@ def untested(effects: Sequence[str]) -> list[str]:
     if not effects:
         return []
     listed = ", ".join(numbers.words(effect) for effect in effects)
-    return [f"There was no time to look how much of these is ruled out: {listed}. Give it by --thorough."]
+    return [f"Time ran out before a limit was found for {listed}. Run again with --thorough."]
 
 
 def _separating(name: str, tie: Sequence[str], stops: bool) -> str:

@@ -36,10 +36,10 @@ TIED = Effect(
         (Support(1.0), "All samples lie on this grid"),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
-        (Support(0.8, weight=Weight(800.0, 200.0)), "carries 80 % of the evidence against the model without it"),
+        (Support(0.8, weight=Weight(800.0, 200.0)), "explains 80 % of the evidence against the model without it"),
         (
             Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)),
-            "gain 90. It moves the signal by 1.4 times what remains",
+            "gains 90. It moves the signal by 1.4 times the remaining error",
         ),
     ],
     ids=[
@@ -117,6 +117,6 @@ def test_what_decides_nothing_is_said_before_anything_else() -> None:
 def test_what_would_fit_and_is_not_needed_is_said_and_not_named() -> None:
     assert needless((), "Something is left.") == "Something is left."
     one, two = (needless(effects, "Something is left.") for effects in (("external_load",), ("backlash", "sensor_lag")))
-    assert one.startswith("Something is left. External load would account for what is left, but so would")
+    assert one.startswith("Something is left. External load would explain the remaining error, but so would")
     assert one.endswith("it is not named.")
-    assert "Backlash, and sensor lag would account" in two and two.endswith("they are not named.")
+    assert "Backlash, and sensor lag would explain" in two and two.endswith("they are not named.")
