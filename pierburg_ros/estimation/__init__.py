@@ -1,1 +1,1 @@
-"""Parameters of a model from recordings: the one engine of identification and diagnosis."""
+"""Estimation of model parameters from recordings: the one engine of identification and diagnosis."""

@@ -1,9 +1,9 @@
-"""A start of a fit from the balance of torques along the measured motion: nothing is simulated, and nothing slips.
+"""Start values of a fit from the torque balance along the measured motion, without a simulation.
 
-Inertia, friction, load and motor have to make up each other, moment by moment. That is linear in nearly all that is
-unknown, so it has one minimum however far a description is off. Noise and smoothing bend what comes out: it is where a
-fit of simulations begins, and no result. An equation error before an output error: Ljung, System Identification (2nd
-edition, 1999), section 10.5.
+Inertia, friction, load and motor must balance at every moment. No simulated slip can come at a wrong moment. The
+balance is linear in nearly all unknowns, so it has one minimum, however wrong a description is. Noise and smoothing
+bias its values: they are the start of a fit of simulations, not a result. An equation error before an output error:
+Ljung, System Identification (2nd edition, 1999), section 10.5.
 """
 
 from __future__ import annotations
@@ -25,37 +25,39 @@ from pierburg_ros.recording import Channel
 from pierburg_ros.recording.noise import noise_of
 
 FARTHEST = math.log(200.0)
-"""Logarithm by which a number may be off, either way. Chosen: a description that is off by more is better written
-anew."""
+"""Largest logarithm of the factor by which a number may be wrong, either way. Chosen: a description that is off by more
+is better written anew."""
 CUBIC = 3
-"""Degree of the curve through the samples of a window. Derived: with it the acceleration may change within it."""
+"""Degree of the polynomial through the samples of a window. Derived: with it the acceleration may change within the
+window."""
 NARROWEST = 7
-"""Samples of the window over which a motion is told, at least. Derived: a cubic then leaves three of them free."""
+"""Smallest number of samples in a window for the motion. Derived: a cubic then leaves three of them free."""
 BLURRED = 0.3
-"""Share of the spread of the acceleration that noise may make up. Derived: it bends the inertia by its square, a
-tenth."""
+"""Largest share of the spread of the acceleration that may be noise. Derived: noise biases the inertia by the square of
+this share, a tenth."""
 CERTAIN = 4.0
-"""Velocity, in standard deviations of its noise, from which friction has a known sign. Derived: white noise comes as
-far with 6e-5."""
+"""Velocity, in standard deviations of its noise, from which the sign of friction is known. Derived: white noise reaches
+it with a probability of 6e-5."""
 NEAR = 0.01
-"""Distance from a stop within which its force is unknown, as a share of the travel. Chosen: as where a
-diagnosis takes a shaft to rest on it; not varied."""
+"""Distance from a stop within which the force of the stop is unknown, as a share of the travel. Chosen: the distance at
+which a diagnosis takes a shaft to rest on a stop; not varied."""
 FEWEST = 50
-"""Moments of the motion for each number that is looked for, at least. Derived: those in one window say the same."""
+"""Smallest number of moments for each number that is fitted. Derived: moments in one window say the same."""
 MOST = 4000
-"""Moments that are looked at, evenly over the motion. Work: more tell no more of a start."""
+"""Largest number of moments, spread evenly over the motion. Work: more moments do not improve a start."""
 RELUCTANCE = 0.01
-"""What a number that is moved by a factor of e costs, as a share of the motor torque. Chosen: what the motion does not
-tell stays as described, and a factor of 20 costs less than a thousandth of that torque squared."""
+"""Cost of changing a number by a factor of e, as a share of the motor torque. Chosen: a number that the motion does not
+determine stays as described, and a factor of 20 costs less than a thousandth of that torque squared."""
 STEP = 1e-4
-"""Step of the finite differences, in logarithms. Derived: the balance is smooth, and this far above rounding."""
+"""Step of the finite differences, in logarithms. Derived: the balance is smooth, and this is far above rounding."""
 ITERATIONS = 100
-"""Iterations of its fit at most. Work: a balance of 4000 moments takes less than a millisecond; not varied."""
+"""Largest number of iterations of the fit. Work: a balance of 4000 moments takes less than a millisecond; not
+varied."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What drove an actuator, and its `measured` `quantity` by `time` [s], both of shape (samples,)."""
+    """The inputs of an actuator, and its `measured` `quantity` at each `time` [s], both of shape (samples,)."""
 
     inputs: Inputs
     time: Signal
@@ -65,9 +67,9 @@ class Motion:
 
 @dataclass(frozen=True)
 class Moments:
-    """Where the shaft slides freely: time [s], angle [rad] and its derivatives, and what drives it; shape (moments,).
+    """Moments at which the shaft slides freely: time [s], angle [rad], its derivatives and the drive; shape (moments,).
 
-    `driving` is the voltage of the armature [V] where its supply was recorded (`volts`), else the input.
+    `driving` is the voltage of the armature [V] where its supply was recorded (`volts`), otherwise the input.
     """
 
     time: Signal
@@ -87,14 +89,14 @@ class Moments:
         return np.asarray(constant / value["armature_resistance"] * (volts - constant * self.velocity))
 
     def left(self, model: Model) -> Signal:
-        """Torque that `model` leaves unexplained, over the spread of what its motor gives."""
+        """Torque that `model` leaves unexplained, over the root mean square of its motor torque, shape (moments,)."""
         motor = self.motor(model)
         torque = missing(model.record()[0], motor, self.time, self.angle, self.velocity, self.acceleration)
         return np.asarray(torque / (float(np.sqrt(np.mean(motor**2))) + 1e-300 * model.scales.torque))
 
 
 def balanced(model: Model, motions: Sequence[Motion], names: Sequence[str]) -> Model | None:
-    """`model` with the values of `names` at which the torques balance best; None where too little moves to tell."""
+    """`model` with the values of `names` at which the torques balance best; None where too few moments are usable."""
     names = [name for name in names if model.values[name] > 0.0 and model.range(name)[0] >= 0.0]
     several = [moments_of(motion, model, MOST // len(motions)) for motion in motions]
     if not names or sum(each.time.size for each in several) < FEWEST * len(names):
@@ -150,7 +152,7 @@ def moments_of(motion: Motion, model: Model, most: int) -> Moments:
 
 
 def driven(motion: Motion, model: Model, time: Signal) -> tuple[Signal, bool, Signal]:
-    """What drives at each `time`, whether its supply was recorded, and whether the bridge is closed, 1 or 0."""
+    """The drive at each `time` [s], whether it is a recorded supply's voltage [V], and 1 where the bridge is closed."""
     inputs = motion.inputs
 
     def held(values: Signal) -> Signal:
@@ -164,7 +166,7 @@ def driven(motion: Motion, model: Model, time: Signal) -> tuple[Signal, bool, Si
 
 
 def window(shown: Signal, noise: float, step: float, order: int) -> int:
-    """Samples of the window over which noise makes up little of a derivative of what is `shown`."""
+    """Number of samples in a window over which noise is a small part of a derivative of `shown`."""
     width = NARROWEST
     while 4 * width < shown.size:
         kernel = weights(width, order, step)
@@ -176,7 +178,7 @@ def window(shown: Signal, noise: float, step: float, order: int) -> int:
 
 
 def weights(width: int, order: int, step: float) -> Signal:
-    """Weights of the samples, the last one first, in a derivative of the cubic through a window of them."""
+    """Weights of the samples of a window, the last one first, for a derivative of the cubic through them."""
     from scipy.signal import savgol_coeffs  # takes long to load
 
     return np.asarray(savgol_coeffs(width, CUBIC, deriv=order, delta=step))

@@ -1,4 +1,4 @@
-"""Runs that share their inputs, simulated in one call: a recording cut in fifty parts costs hardly more than whole."""
+"""Runs that share their inputs, simulated in one call: a recording in fifty parts costs hardly more than the whole."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from pierburg_ros.plant.simulate import simulate_stretches
 
 @dataclass(frozen=True)
 class Batch:
-    """Successive runs over the same inputs."""
+    """Successive runs with the same inputs."""
 
     runs: tuple[Run, ...]
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
-        """What `model` makes of the inputs in each run, one after the other, shape (samples,): as the runs themselves.
+        """The simulation by `model` of each run, one after the other, shape (samples,): the same as run by run.
 
-        With a `switch` another model takes over in the middle of each.
+        With a `switch` another model takes over in the middle of each run.
         """
         if len(self.runs) == 1 or switch is not None:
             return np.concatenate([run.simulated(model, switch) for run in self.runs])
@@ -49,12 +49,12 @@ class Batch:
 
 
 def batches(runs: Sequence[Run]) -> Iterator[Batch]:
-    """The runs in as few batches as can be, in their order."""
+    """The runs in as few batches as possible, in their order."""
     for _, some in groupby(enumerate(runs), lambda each: _shared(*each)):
         yield Batch(tuple(run for _, run in some))
 
 
 def _shared(place: int, run: Run) -> tuple[object, ...]:
-    """What tells runs of one batch from others; of a run that has to be simulated by itself its own place."""
+    """A key that is equal for all runs of one batch; a run that must be simulated by itself has its place as key."""
     alone = run.shooting is not None or run.since is not None or run.quantity == "speed"
     return (place,) if alone else (id(run.inputs), run.number, run.quantity, id(run.decoder))

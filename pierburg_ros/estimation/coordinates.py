@@ -1,4 +1,4 @@
-"""The coordinates in which parameters are searched: of order one, logarithmic where that makes sense, within range."""
+"""Coordinates in which parameters are searched: of order one, logarithmic where that makes sense, within range."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from pierburg_ros.estimation.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
 
 DRIFT = math.log(6.0)
-"""A base parameter is searched within this factor (logarithm) of its nominal value, either way. Chosen: the paper's
-own change of R is a factor of 1.42, and a bound should not be met; not varied."""
+"""A base parameter is searched within this factor (logarithm) of its nominal value, either way. Chosen: the paper's own
+change of R is a factor of 1.42, and no fit should reach a bound; not varied."""
 WIDTH = 20.0
-"""An effect's parameter is searched up to so many times what is plausible. Chosen: a bound that no fit should meet;
+"""An effect's parameter is searched up to so many times its plausible value. Chosen: a bound that no fit should reach;
 not varied."""
 DECADE = 10.0
-"""A parameter searched by its logarithm is searched beyond what is plausible by this factor. Chosen: a bound that no
-fit should meet; not varied."""
+"""Factor by which the range of a logarithmic parameter exceeds the plausible range. Chosen: a bound that no fit should
+reach; not varied."""
 UNKNOWN = 0.04
-"""Scale of a base parameter that is nominally 0, or may be negative there, as a share of that of its unit. Chosen: a
-seventh of the valve's own preload; not varied."""
+"""Scale of a base parameter that is nominally 0, as a share of that of its unit. Chosen: a seventh of the valve's own
+preload; not varied."""
 ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
 """Parameters that are counted from a base parameter, by dotted name."""
 BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
@@ -34,7 +34,7 @@ BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
 
 @dataclass(frozen=True)
 class Axis:
-    """One quantity as a search moves it: value = scale coordinate, or scale exp(coordinate) where logarithmic.
+    """One axis of the search: value = scale coordinate, or scale exp(coordinate) where logarithmic.
 
     `lower` and `upper` bound the coordinate, `minimum` and `maximum` the value; `step` is that of finite differences.
     """
@@ -60,7 +60,7 @@ class Axis:
 
 
 class Coordinates:
-    """Between values by dotted name and the numbers that a search moves, one for each of `names`.
+    """Conversion between values by dotted name and the coordinates of the search, one for each of `names`.
 
     A positive base parameter is searched by the logarithm of its ratio to the `nominal` one. An effect's parameter is
     searched as it declares, a moment as a share of the `duration` [s].
@@ -88,7 +88,7 @@ class Coordinates:
         return result
 
     def point(self, values: Mapping[str, float]) -> Signal:
-        """The point with these `values`; a change of which they say nothing is one to the same value, half way."""
+        """The point with these `values`, shape (names,); a missing change is one to the same value, half way."""
         result = np.empty(len(self.names))
         for i, (name, axis) in enumerate(zip(self.names, self.axes, strict=True)):
             missing = 0.5 * axis.scale if name.endswith(WHEN) else values.get(name.removesuffix(AFTER), 0.0)
@@ -99,12 +99,12 @@ class Coordinates:
         return np.clip(result, *self.bounds)
 
     def within(self, values: Mapping[str, float]) -> dict[str, float]:
-        """`values` with those that are searched brought within their bounds."""
+        """`values` with those that are searched limited to their bounds."""
         return self.values(self.point(values))
 
 
 def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
-    """`values` with pairs that must keep an order put in order; what they lack is nominal."""
+    """`values` with pairs that must keep an order put in order; missing values are nominal."""
     ordered = dict(values)
     for name, above in ABOVE.items():
         value, least = (ordered.get(each, nominal.values.get(each, 0.0)) for each in (name, above))
@@ -126,12 +126,12 @@ def in_order(values: Mapping[str, float], nominal: Model) -> dict[str, float]:
 
 
 def least_added(name: str, values: Mapping[str, float], nominal: Model) -> float:
-    """The least value of a parameter that may at most cancel what it is added to; what `values` lack is nominal."""
+    """The smallest value of a parameter that may at most cancel what it is added to; missing `values` are nominal."""
     return 0.0 - values.get(ADDED[name], nominal.values[ADDED[name]])
 
 
 def without_effects(model: Model, effects: Iterable[str]) -> Model:
-    """`model` with these effects absent, all else as it is but for pairs that must keep an order."""
+    """`model` with these effects absent, all else unchanged except pairs that must keep an order."""
     absent = {f"{effect}.{name}": 0.0 for effect in effects for name in EFFECT[effect].names}
     return model.with_values(in_order({**model.values, **absent}, model))
 
@@ -160,7 +160,7 @@ def _axis_of_effect(name: str, nominal: Model, duration: float) -> Axis:
     scale, (low, high) = p.scale(nominal.scales), p.plausible
     lowest, highest = p.searched or (-math.inf, math.inf)
     lowest, highest = max(lowest, p.minimum / scale), min(highest, p.maximum / scale)
-    # where the actuator always has the effect, a drift of it is searched too
+    # if the actuator always has the effect, its drift is searched too
     own = abs(nominal.values[name]) / scale
     if p.logarithmic:
         lower, upper = math.log(max(lowest, low / DECADE)), math.log(min(highest, high * DECADE))

@@ -1,4 +1,4 @@
-"""How well a fit knows its quantities: from white noise, or from blocks where the residual is not white."""
+"""Covariance of a fit: from white noise, or from blocks of the residual where that is not white."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from scipy.special import ndtri, stdtrit
 from pierburg_ros.arrays import Flags, Signal
 
 RANK = 1e-5
-"""Singular values below this share of the largest are differences of rounding, not information. Derived: central
-differences of 1e-5 are wrong by about 1e-10, far below. Between the two it was not varied."""
+"""Singular values below this share of the largest are rounding errors, not information. Derived: central differences of
+1e-5 are wrong by about 1e-10, far below. Values between the two were not tried."""
 
 
 @dataclass(frozen=True)
 class Covariance:
-    """Covariance `matrix` of the coordinates, shape (names, names), and the factor from deviation to 95 %.
+    """Covariance `matrix` of the coordinates, shape (names, names), and the factor from standard deviation to 95 %.
 
-    `undetermined`: nothing in the recording fixes this coordinate, shape (names,); its covariance is void.
-    `noise` is the residual's standard deviation. `white`: the residual looks like sensor noise, so the
-    classical covariance holds. If not, it is the sandwich over `blocks` stretches of the residual, each a few
-    correlation times long: honest about correlated noise, but it repairs no error of the model.
+    `undetermined`, shape (names,): the recording does not determine this coordinate, and its covariance is void.
+    `noise` is the standard deviation of the residual. `white`: the residual looks like sensor noise, so the classical
+    covariance holds. Otherwise the covariance is the sandwich over `blocks` stretches of the residual, each a few
+    correlation times long. It accounts for correlated noise, but corrects no error of the model.
     """
 
     matrix: Signal
@@ -50,7 +50,7 @@ def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance
 
 
 def _inverse(jacobian: Signal) -> tuple[Signal, Flags]:
-    """Inverse of jacobian' jacobian in the directions that the data fix, and who takes part in others."""
+    """Inverse of jacobian' jacobian in the directions that the data determine, and the names with a part in others."""
     _, lengths, directions = np.linalg.svd(jacobian, full_matrices=False)
     known = lengths > RANK * max(lengths[0], 1e-300)
     scaled = directions[known] / lengths[known, None]
@@ -58,10 +58,10 @@ def _inverse(jacobian: Signal) -> tuple[Signal, Flags]:
 
 
 def correlation_length(residual: Signal) -> int:
-    """Samples after which the residual no longer resembles itself; 1 for white noise.
+    """Number of samples over which the residual is correlated; 1 for white noise.
 
-    Counts the lags up to the first whose autocorrelation is below 0.05, or within what white noise shows by
-    chance (4 deviations) if that is more.
+    It counts the lags up to the first whose autocorrelation is below 0.05, or below what white noise shows by chance (4
+    standard deviations) if that is more.
     """
     centred = residual - residual.mean()
     size = centred.size

@@ -1,4 +1,4 @@
-"""All recordings of one actuator as a fit sees them: runs, noise, and which samples train, validate or test."""
+"""All recordings of one actuator as a fit uses them: runs, noise, and training, validation and test samples."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ from pierburg_ros.recording.noise import noise_of
 
 BLOCK = 15.7
 """Length of the blocks that train, validate and test in turn, in the actuator's own time; less in a recording shorter
-than 16 of them. Chosen: 1.5 s for the valve, some movements and standstills in each part, and longer than the 1.15 s in
-which it forgets; not varied."""
+than 16 of them. Chosen: 1.5 s for the valve. Each part then has some movements and standstills, and a block is longer
+than the 1.15 s in which the valve forgets; not varied."""
 CYCLE = 8
-"""Of so many blocks the third validates and the seventh tests; the others train. Chosen: an eighth each, as far apart
-as can be; not varied."""
+"""Number of blocks in a cycle: the third validates, the seventh tests, and the others train. Chosen: an eighth each, as
+far apart as possible; not varied."""
 
 WILD = 1e6
-"""Largest error [noise] that is told from larger ones. Derived: its square, summed over a day at 1 kHz, is 1e20; an
-unstable simulation goes on to where squares are no numbers."""
+"""Largest error [noise]; larger ones are clipped to it. Derived: its square, summed over a day at 1 kHz, is 1e20. An
+unstable simulation reaches values whose squares are no numbers."""
 UNSIMULATED = 1e3
-"""Error [noise] that stands where a model cannot be simulated. Chosen: more than any error of a model that can be,
-which the noise tells by; not varied."""
+"""Error [noise] that is used where a model cannot be simulated. Chosen: more than any error, in noises, of a model that
+can be simulated; not varied."""
 
 UNKNOWN = "messages of the duty are missing"
-"""Why spans without a known input are left out."""
+"""The reason for leaving out spans without a known input."""
 
 
 @dataclass(frozen=True)
 class Omission:
-    """A `span` [s] of the recording of a `number` that is left out, or samples in it, and why."""
+    """A `span` [s] of recording `number` that is left out, or in which samples are left out, and the reason."""
 
     number: int
     span: Span
@@ -55,14 +55,14 @@ class Omission:
 class Data:
     """All recordings of one actuator.
 
-    `noise` is the standard deviation of what no model can explain: of the sensor noise, `sensor_noise`, of what missing
-    messages of the duty may do, and of stamps that are off. `step` is that of the converter where it is coarse beside
-    the noise, otherwise 0; all in the measured unit. `left_out` are spans without a known input, and whatever else
-    tells nothing of the actuator; `warnings` is what to say first of recordings that lack messages, `remarks` of those
-    that are dirty.
-    `disturbed`: a quantity that was not measured is taken to have wandered. `unlike` is how much of the noise moves
-    whole stretches and not single samples [measured unit, root mean square], so that as much is no evidence: missing
-    messages of the duty, stamps that are off, and what is `kept_apart`.
+    `noise` is the standard deviation of the error that no model can explain. It comes from the sensor noise,
+    `sensor_noise`, from missing messages of the duty, and from wrong stamps. `step` is that of the converter where it
+    is coarse beside the noise, otherwise 0. These are in the measured unit. `left_out` are spans without a known input,
+    and spans that say nothing of the actuator for other reasons. A summary begins with the `warnings` about recordings
+    that lack messages and the `remarks` on those that are dirty. `disturbed`: a quantity that was not measured is taken
+    to have wandered. `unlike` [measured unit, root mean square] is the part of the noise that moves whole stretches and
+    not single samples, so that an error of this size is no evidence. It comes from missing messages of the duty, wrong
+    stamps, and errors that are `kept_apart`. `rounding` is that of `lasting_rounding`.
     """
 
     actuator: Actuator
@@ -78,7 +78,7 @@ class Data:
     rounding: float = 0.0
 
     def kept_apart(self, size: float) -> Data:
-        """With an error of such a `size` [measured unit, root mean square] as noise that is no evidence."""
+        """The same with an error of this `size` [measured unit, root mean square] as noise that is no evidence."""
         return replace(self, noise=math.hypot(self.noise, size), unlike=math.hypot(self.unlike, size))
 
     @property
@@ -89,8 +89,8 @@ class Data:
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Measured minus simulated over all runs, shape (samples,), in units of the noise.
 
-        Very large, but a number, from where a model cannot be simulated; and of changing sign, so that no sample tells
-        the next.
+        Where a model cannot be simulated, the residual is very large but a number. Its sign alternates, so that no
+        sample predicts the next.
         """
         simulated = np.concatenate([batch.simulated(model, switch) for batch in self._batches])
         whole = (self.measured - simulated) / self.noise
@@ -109,17 +109,17 @@ class Data:
 
     @property
     def input_filtered(self) -> bool:
-        """Whether an input was recorded behind a filter, whose time the recording tells: what is late may be that."""
+        """Whether an input was recorded behind a filter of known time constant: a delay may come from it."""
         return any(run.input_lag > 0.0 for run in self.runs)
 
     @property
     def in_stretches(self) -> bool:
-        """Whether a simulation begins again and again, since the actuator does not forget how it began."""
+        """Whether runs are simulated in stretches, since the actuator does not forget its initial state."""
         return any(run.shooting is not None for run in self.runs)
 
     @property
     def longest(self) -> Run:
-        """The longest run of the first recording: all of it, unless messages are missing."""
+        """The longest run of the first recording: the whole recording, unless messages are missing."""
         first = self.runs[0].number
         return max((run for run in self.runs if run.number == first), key=lambda run: run.time.size)
 
@@ -149,20 +149,20 @@ class Data:
         return self.changed(lambda run: run.cut(duration))
 
     def changed(self, run_of: Callable[[Run], Run]) -> Data:
-        """The same with each run replaced by what `run_of` makes of it."""
+        """The same with each run replaced by the result of `run_of`."""
         return replace(self, runs=tuple(map(run_of, self.runs)))
 
     def only(self, number: int) -> Data:
-        """The recording of a `number`."""
+        """The recording `number` alone."""
         return replace(self, runs=tuple(run for run in self.runs if run.number == number))
 
     def without(self, number: int) -> Data:
-        """All recordings but that of a `number`."""
+        """All recordings except `number`."""
         return replace(self, runs=tuple(run for run in self.runs if run.number != number))
 
     @property
     def train(self) -> Flags:
-        """Which samples of `residual` train."""
+        """Which samples of `residual` are for training."""
         return np.concatenate([run.train for run in self.runs])
 
     @property
@@ -172,14 +172,14 @@ class Data:
 
     @property
     def test(self) -> Flags:
-        """Which samples of `residual` neither fit nor choice has used."""
+        """Which samples of `residual` are used by neither fit nor choice."""
         return ~(self.train | self.validation)
 
 
 def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omission] = ()) -> Data:
-    """The recordings `without` some spans, all training; noise and converter are estimated from them.
+    """The recordings `without` some spans, all for training; noise and converter are estimated from them.
 
-    InputError where unfit.
+    InputError where they cannot be fitted.
     """
     if not recordings:
         raise InputError("There is no recording to fit; expected one or more. Name a file.")
@@ -205,7 +205,7 @@ def data_of(recordings: Sequence[Recording], model: Model, without: Sequence[Omi
 
 
 def in_parts(data: Data) -> Data:
-    """`data` with its samples split into blocks that train, validate and test."""
+    """`data` with its samples split into training, validation and test blocks."""
 
     def split(run: Run) -> Run:
         number = _block(data, run) % CYCLE
@@ -216,18 +216,18 @@ def in_parts(data: Data) -> Data:
 
 
 def held_back(data: Data) -> Data:
-    """`data` with a third of the training blocks kept from the fit as well, for a choice before the last one."""
+    """`data` with a third of the training blocks held back from the fit as well, for a choice before the last one."""
     runs = (run.trained_on(run.train & (_block(data, run) % (CYCLE // 2) != 0)) for run in data.runs)
     return replace(data, runs=tuple(runs))
 
 
 def with_validation(data: Data) -> Data:
-    """`data` with what has validated training as well, for the last fit after the choice."""
+    """`data` with its validation samples for training as well, for the last fit after the choice."""
     return replace(data, runs=tuple(run.trained_on(run.train | run.validation) for run in data.runs))
 
 
 def all_training(data: Data) -> Data:
-    """`data` with every sample training."""
+    """`data` with every sample for training."""
     return replace(data, runs=tuple(run.trained_on(np.ones_like(run.train)) for run in data.runs))
 
 
@@ -237,7 +237,7 @@ def rms(values: Signal) -> float:
 
 
 def _block(data: Data, run: Run) -> np.ndarray:
-    """Number of the block of each sample of a run, from the start of its recording; a short one gets shorter blocks."""
+    """Block number of each sample of a run, from the start of its recording; a short recording has shorter blocks."""
     times = [each.time for each in data.runs if each.number == run.number]
     start, end = times[0][0], times[-1][-1]
     return np.asarray(

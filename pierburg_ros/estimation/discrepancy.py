@@ -1,4 +1,4 @@
-"""What no model of physics says, as part of the likelihood: a disturbance that wanders beside the sensor's noise."""
+"""The discrepancy as part of the likelihood: a disturbance beside sensor noise that no model of physics describes."""
 
 from __future__ import annotations
 
@@ -15,46 +15,48 @@ from pierburg_ros.estimation.run import Run
 from pierburg_ros.kernel import kernel
 
 SPAN = 24
-"""Samples over which the way of the shaft is taken. Chosen: 0.05 s at 500 Hz; not varied."""
+"""Number of samples over which the movement of the shaft is measured. Chosen: 0.05 s at 500 Hz; not varied."""
 CERTAIN = 4.0
-"""So many standard deviations of the noise make a movement. Derived: white noise does so with 6e-5."""
+"""Number of standard deviations of the noise from which a difference is a movement. Derived: white noise reaches it
+with a probability of 6e-5."""
 REACHES = np.array([0.003, 0.03, 0.3])
-"""Shares of the way of a recording from which the reach of a discrepancy is searched. Chosen: a factor of ten apart;
-not varied."""
+"""Shares of the way of a recording at which the search for the reach of a discrepancy starts. Chosen: a factor of ten
+apart; not varied."""
 MEMORIES = np.array([0.005, 0.05, 0.5])
-"""Correlation times from which it is searched, as shares of the longest recording. Chosen: a factor of ten apart; not
+"""Correlation times at which the search starts, as shares of the longest recording. Chosen: a factor of ten apart; not
 varied."""
 SHORTEST, LONGEST = 1.0, 2.0
-"""Range of the correlation time that is searched, in samples and in longest recordings. Derived: what forgets within a
-sample is white noise, and what lasts twice as long as a recording is the same at both its ends."""
+"""Range of the correlation time in the search, in samples and in longest recordings. Derived: a disturbance that is
+forgotten within a sample is white noise. One that lasts twice as long as a recording is the same at both its ends."""
 SMALLEST, LARGEST = 1e-3, 10.0
-"""Range of its size that is searched, in noises and in sizes of the residual. Derived: a thousandth of the noise
-changes no likelihood, and what is ten times the residual is not seen to vary."""
+"""Range of its size in the search, in noises and in sizes of the residual. Derived: a thousandth of the noise changes
+no likelihood, and a disturbance of ten times the residual is not seen to vary."""
 FORGOTTEN = 50.0
-"""Time of a discrepancy's clock after which nothing is left of it. Derived: exp(-sqrt(3) 50) is 2e-38."""
+"""Time of a discrepancy's clock after which it is forgotten. Derived: exp(-sqrt(3) 50) is 2e-38."""
 TINY = 1e-12
-"""Variance [noise^2] of a discrepancy that is none. Derived: it changes innovations by as little as rounding does."""
+"""Variance [noise^2] of a discrepancy that counts as none. Derived: it changes innovations by as little as rounding
+does."""
 HUGE = 1e200
-"""Product of variances at which its logarithm is taken. Derived: floats reach 1e308, and no variance 1e100."""
+"""Product of variances at which the filter takes its logarithm. Derived: floats reach 1e308, and no variance 1e100."""
 NEAREST = 1e-3
-"""Shortest reach that is searched, as a share of the way of a recording. Chosen: a thousandth of it, 0.05 rad where the
+"""Shortest reach in the search, as a share of the way of a recording. Chosen: a thousandth of it, 0.05 rad where the
 valve goes through its travel thirty times; not varied."""
 
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """A disturbance added to the measured signal: it stands for what a simulation lacks.
+    """A disturbance added to the measured signal, in place of what a simulation lacks.
 
-    A Gaussian process of standard deviation `size` [noise] whose clock runs with time and with the way of the shaft: it
-    forgets within `memory` [s] at rest, and within `reach` [noise] of movement. A shaft that sets off at the wrong
-    moment ends elsewhere and stays there until it moves again. (Kennedy and O'Hagan, Bayesian calibration of computer
-    models, J. R. Stat. Soc. B 63, 2001.) What it predicts from the samples before is no evidence.
+    It is a Gaussian process of standard deviation `size` [noise]. Its clock runs with time and with the way of the
+    shaft: it forgets within `memory` [s] at rest, and within `reach` [noise] of movement. A shaft that sets off at the
+    wrong moment ends elsewhere and stays there until it moves again. (Kennedy and O'Hagan, Bayesian calibration of
+    computer models, J. R. Stat. Soc. B 63, 2001.) The error that it predicts from earlier samples is no evidence.
 
     Its covariance is (1 + sqrt(3) s) exp(-sqrt(3) s) after a time s of the clock (Matern, of smoothness 3/2: Rasmussen
     and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17), as a process of two states (Hartikainen and
     Sarkka, Kalman filtering and smoothing solutions to temporal Gaussian process regression models, IEEE MLSP 2010). It
-    has a slope and no kinks, as an angle has that a wrong torque turns: what a wrong torque does is foreseen, and
-    no evidence for an effect that bends to it.
+    has a slope and no kinks, like an angle under a wrong torque. The error from a wrong torque is therefore predicted,
+    and is no evidence for an effect that adapts to it.
     """
 
     size: float
@@ -63,7 +65,7 @@ class Discrepancy:
 
 
 class Kalman:
-    """The Kalman filter of discrepancies beside white noise over the samples of some runs, those `seen` known."""
+    """The Kalman filter of discrepancies beside white noise over the samples of some runs; those `seen` are known."""
 
     def __init__(self, data: Data, seen: Flags) -> None:
         runs, noise = data.runs, data.noise
@@ -85,7 +87,7 @@ class Kalman:
     def most_likely(self, residual: Signal, beside: Signal | None = None) -> Discrepancy:
         """The discrepancy under which a residual [noise], shape (samples,), is most likely.
 
-        Where there is a column `beside` it, shape (samples,), with as much of that taken out as suits each.
+        With a column `beside` it, shape (samples,), the best multiple of the column is taken out for each discrepancy.
         """
 
         def cost(point: Signal) -> float:
@@ -111,7 +113,7 @@ class Kalman:
 
 
 def _steps(run: Run) -> Signal:
-    """Time [s] from each sample of a run to the next one, infinite before those at which the simulation begins anew."""
+    """Time [s] to each sample of a run from the one before; infinite at those at which the simulation begins again."""
     steps = np.append(np.inf, np.diff(run.time))
     if run.shooting is not None:
         steps[run.shooting.first] = np.inf
@@ -120,10 +122,11 @@ def _steps(run: Run) -> Signal:
 
 @dataclass(frozen=True)
 class Filter:
-    """What turns residuals into innovations for one `Discrepancy`.
+    """The filter that turns residuals into innovations for one `Discrepancy`.
 
-    Samples that are `seen`, how much of a prediction they `keep` of the one before, the `gain` and the `spread` of the
-    innovations; all of shape (samples,).
+    The arrays `seen` (whether a sample is known) and `spread` (standard deviation of its innovation) have shape
+    (samples,). The matrix `keep` that predicts a sample from the one before has shape (samples, 4), the `gain` shape
+    (samples, 2).
     """
 
     seen: Flags
@@ -132,7 +135,7 @@ class Filter:
     spread: Signal
 
     def __call__(self, residual: Signal) -> Signal:
-        """Innovations of a residual, shape (samples,), over their standard deviation, where it is seen."""
+        """Innovations of a residual, shape (samples,), over their standard deviation, at the samples that are seen."""
         return np.asarray(_innovations(residual, self.seen, self.keep, self.gain, self.spread)[self.seen])
 
     @cached_property
@@ -142,19 +145,19 @@ class Filter:
 
 
 def evidence(filtered: Filter, residual: Signal) -> float:
-    """Minus twice the logarithm of the likelihood of a residual, shape (samples,), but for a constant."""
+    """Minus twice the log likelihood of a residual, shape (samples,), up to a constant."""
     innovations = filtered(residual)
     return float(innovations @ innovations) + 2.0 * filtered.log_spread
 
 
 def share(filtered: Filter, residual: Signal, column: Signal) -> float:
-    """The multiple of a column, shape (samples,), that makes what is left of a residual likeliest."""
+    """The multiple of a column, shape (samples,), that makes the rest of a residual most likely."""
     left, own = filtered(residual), filtered(column)
     return float(own @ left) / max(float(own @ own), 1e-300)
 
 
 def way(measured: Signal) -> Signal:
-    """How far the shaft goes from each sample to the next [noise], 0 where that is not told from the noise."""
+    """Movement of the shaft from each sample to the next [noise]; 0 where it is not distinguished from the noise."""
     half = SPAN // 2
     padded = np.concatenate([np.full(half, measured[0]), measured, np.full(half, measured[-1])])
     slope = np.abs(padded[2 * half :] - padded[: -2 * half]) / (2 * half)
@@ -182,7 +185,7 @@ def _gains(
 def _evidence(
     residual: Signal, steps: Signal, way: Signal, seen: Flags, size: float, memory: float, reach: float
 ) -> float:
-    """The evidence of `_gains` and `_innovations`, in one pass that keeps nothing."""
+    """The evidence of `_gains` and `_innovations`, in one pass that stores nothing."""
     level, rate = size * size, 3.0 * size * size
     known = level, 0.0, rate
     value = slope = squares = logarithms = 0.0
@@ -218,7 +221,7 @@ def _elapsed(step: float, way: float, memory: float, reach: float) -> float:
 def _predicted(
     known: tuple[float, float, float], kept: tuple[float, float, float, float], level: float, rate: float
 ) -> tuple[float, float, float]:
-    """Covariance of value and slope at the next sample: what is known beyond the stationary one fades."""
+    """Covariance of value and slope at the next sample: its difference from the stationary covariance decays."""
     a, b, c, d = kept
     u, v, w = known[0] - level, known[1], known[2] - rate
     p = max(level + a * a * u + 2.0 * a * b * v + b * b * w, 0.0)
@@ -229,12 +232,12 @@ def _predicted(
 
 @kernel
 def _told(predicted: tuple[float, float, float], seen: bool) -> tuple[float, float, float]:
-    """The covariance once a sample is known, if it is seen."""
+    """The covariance after a sample: updated if the sample is seen."""
     p, q, r = predicted
     if seen:
         share = 1.0 / (p + 1.0)
         p, q, r = p * share, q * share, r - q * q * share
-    # rounding may not make it less than a correlation of 1 allows
+    # rounding must not lead to a correlation above 1
     if p > TINY and r * p < q * q:
         r = q * q / p
     return p, q, r
@@ -242,7 +245,7 @@ def _told(predicted: tuple[float, float, float], seen: bool) -> tuple[float, flo
 
 @kernel
 def _kept(elapsed: float) -> tuple[float, float, float, float]:
-    """What is left of value and slope after some time of the clock, by rows."""
+    """Transition matrix of value and slope over some time of the clock, by rows."""
     root = math.sqrt(3.0) * elapsed
     fade = math.exp(-root)
     return (1.0 + root) * fade, elapsed * fade, -3.0 * elapsed * fade, (1.0 - root) * fade

@@ -21,17 +21,17 @@ from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
 FORGIVEN = 3.0
-"""Errors beyond so many noises count by their logarithm where a fit forgives. Derived: of white noise only 0.27 % lies
-beyond."""
+"""Number of noises beyond which errors count by their logarithm in a forgiving fit. Derived: of white noise only 0.27 %
+lies beyond."""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """An explanation with its best values by dotted name, the model with them, and the one that takes over if any.
+    """An explanation with its best values by dotted name, the model with them, and the switch to another model, if any.
 
     `half_step` is half a step of the converter over the noise, 0 where steps are fine. `unlike` [noise, root mean
-    square] is what lasts and yet is no evidence: what of the noise does (`Data`), and what simulations may differ by;
-    `rounding` what steps of the converter add while the shaft rests.
+    square] is an error that is correlated in time and yet no evidence: that part of the noise (`Data`), and the
+    difference between correct simulations. `rounding` is what steps of the converter add while the shaft rests.
     `refined`: the cost has been searched for other local minima.
     """
 
@@ -52,27 +52,27 @@ class Fit:
 
     @cached_property
     def misfit(self) -> float:
-        """What of `chi2` is evidence against the explanation: all, unless steps of the converter are coarse."""
+        """The part of `chi2` that is evidence against the explanation: all, unless converter steps are coarse."""
         return counted(self.solution.residual, self.half_step)
 
     @property
     def ratio(self) -> float:
-        """Training error over the noise, as far as it is evidence."""
+        """Training error over the noise, without the part that is no evidence."""
         return float(np.sqrt(self.misfit / self.solution.residual.size))
 
     @cached_property
     def repetition(self) -> float:
-        """Samples of the residual that count as one, 1 for white noise."""
+        """Number of samples of the residual that count as one, 1 for white noise."""
         return repetition(self.solution.residual)
 
     @cached_property
     def structure(self) -> float:
-        """What speaks for an error that lasts in the residual, in -2 log likelihood."""
+        """Evidence in the residual for an error that is correlated in time, in -2 log likelihood."""
         return structure(beyond(self.solution.residual, self.half_step), float(np.hypot(self.unlike, self.rounding)))
 
     @property
     def spread(self) -> float:
-        """Rise of chi2 that stands for one standard deviation: 1 where the residual is white noise."""
+        """Rise of chi2 for one standard deviation: 1 where the residual is white noise."""
         return max(1.0, self.ratio**2) * self.repetition
 
 
@@ -80,8 +80,8 @@ class Estimator:
     """Fits explanations by one nominal model to the training samples of some recordings.
 
     `over` maps a function over the columns of a Jacobian: on several cores where a fit has them to itself. With a
-    `discrepancy` residuals count by what it does not predict from the samples before: their innovations. With a `unit`
-    [noise] they count in that, and beside them by how far values lie from what is plausible (`prior.py`).
+    `discrepancy`, residuals count as innovations: without the error that it predicts from earlier samples. With a
+    `unit` [noise], residuals count in this unit, and the prior of the values counts as well (`prior.py`).
     """
 
     def __init__(
@@ -103,11 +103,11 @@ class Estimator:
 
     @cached_property
     def between_rests(self) -> Estimator:
-        """The same for recordings cut where the shaft rests: costs are smoother, values only nearly right."""
+        """The same for recordings cut where the shaft rests: the cost is smoother, the values are only nearly right."""
         return Estimator(cut_at_rests(self.data), self.nominal, self.over, self.discrepancy, self.unit)
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
-        """Training residual of `model` in units of the noise, or its innovations; large where there is none."""
+        """Training residual of `model` [noise], or its innovations; large where the model cannot be simulated."""
         residual = self.data.residual(model, switch)
         return residual[self._train] if self._filter is None else self._filter(residual)
 
@@ -117,7 +117,7 @@ class Estimator:
         return float(residual @ residual)
 
     def validation_misfit(self, fit: Fit) -> float:
-        """What counts as evidence of chi2 on the samples that validate; 0 where there are none."""
+        """The part of chi2 on validation samples that is evidence; 0 where there are none."""
         residual = self.data.residual(fit.model, fit.switch)[self._validation]
         return counted(residual, self.data.half_step)
 
@@ -135,13 +135,13 @@ class Estimator:
         enough: float = -np.inf,
         reach: float = np.inf,
     ) -> Fit:
-        """Best values of an explanation from `start`, dotted values; what it lacks starts nominal.
+        """The fit of an explanation from `start`, values by dotted name; values that it lacks start at nominal.
 
-        A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not
-        decide; it ends with the forgiving cost and wants an ordinary fit after it. `steps` are the differences
-        of the Jacobian, shape (free quantities,), in the coordinates of the search. The quantity `held` stays at its
-        start, the others within their `reach` of it, in coordinates. A descent ends where an iteration lowers the cost
-        by less than `tolerance` of it, or where the cost is `enough`; it begins with known `slopes`, if given.
+        A forgiving fit counts large errors by their logarithm, so that a slip at the wrong moment does not decide. It
+        ends with the forgiving cost, and needs an ordinary fit after it. `steps` are the differences of the Jacobian,
+        shape (free quantities,), in the coordinates of the search. The quantity `held` stays at its start, the others
+        within `reach` of theirs, in coordinates. A descent ends where an iteration lowers the cost by less than
+        `tolerance` of it, or where the cost is at most `enough`. It begins with known `slopes`, if given.
         """
         coordinates = self.coordinates(explanation)
         begin = coordinates.point({**self.nominal.values, **(start or {})})
@@ -159,15 +159,15 @@ class Estimator:
         return self._fitted(explanation, coordinates, solution)
 
     def at(self, explanation: Explanation, values: Mapping[str, float] | None = None) -> Fit:
-        """An explanation with given `values`, not searched for better ones; what they lack is nominal."""
+        """An explanation at given `values`, without a search; values that are missing are nominal."""
         return self.fit(explanation, values, 0)
 
     def restated(self, fit: Fit) -> Fit:
-        """`fit` with residual and Jacobian on the training samples of these recordings."""
+        """`fit` with residual and Jacobian on the training samples of this estimator."""
         return self.at(fit.explanation, fit.values)
 
     def residual_at(self, explanation: Explanation, coordinates: Coordinates, point: Signal) -> Signal:
-        """Training residual at a point of the search, in units of the noise; with a `unit` in that, then the prior."""
+        """Training residual at a point of the search [noise]; with a `unit`, in that unit and followed by the prior."""
         residual = self.residual(*self.models(explanation, coordinates.values(point)))
         if self.unit is None:
             return residual
@@ -178,7 +178,7 @@ class Estimator:
         return Coordinates(explanation.names, self.nominal, self.data.duration)
 
     def models(self, explanation: Explanation, values: Mapping[str, float]) -> tuple[Model, Switch | None]:
-        """The model with `values`, and the one that takes over where the explanation has a change."""
+        """The model with `values`, and the switch to another one where the explanation has a change."""
         own = {**explanation.fixed, **{name: value for name, value in values.items() if "@" not in name}}
         model = self.model(own)
         if explanation.changed is None:
@@ -187,7 +187,7 @@ class Estimator:
         return model, Switch(self.model({**own, name: values[name + AFTER]}), values[name + WHEN])
 
     def model(self, values: Mapping[str, float]) -> Model:
-        """The nominal model with `values`, pairs that must keep an order put in order."""
+        """The nominal model with `values`; pairs that must keep an order are put in order."""
         return self.nominal.with_values(in_order(values, self.nominal))
 
     def slopes(self, fit: Fit, steps: Signal) -> Signal:
@@ -210,5 +210,5 @@ class Estimator:
 
 
 def forgiven(residual: Signal) -> Signal:
-    """Residuals [noise] with their size beyond `FORGIVEN` replaced by its logarithm."""
+    """Residuals [noise] whose size counts by its logarithm beyond about `FORGIVEN`."""
     return np.sign(residual) * FORGIVEN * np.log1p(np.abs(residual) / FORGIVEN)

@@ -1,4 +1,4 @@
-"""A population that moves towards the minimum of a rough cost: evolution strategy with covariance matrix adaptation."""
+"""Search for the minimum of a rough cost by a population: evolution strategy with covariance matrix adaptation."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.least_squares import Map
 
 HISTORY = (10.0, 30.0)
-"""Generations whose best points agree before it ends: so many, and so many times the quantities over the points of one.
-Given: the tutorial's criterion `TolFun`."""
+"""Number of last generations whose lowest costs must agree at the end: the first value, plus the second times the
+quantities over the points of one generation. Given: the tutorial's criterion `TolFun`."""
 
 
 def evolved(
@@ -24,12 +24,13 @@ def evolved(
     over: Map = map,
     tolerance: float = 1.0,
 ) -> Signal:
-    """The lowest point that so many `generations` of `points` each have come upon, shape (quantities,).
+    """The lowest point that `generations` of `points` each have found, shape (quantities,).
 
-    The first ones are drawn around `begin` with a `covariance`, shape (quantities, quantities), later ones as the
-    better half of all before tell, within `bounds`: only the order of costs counts, so jumps of a cost do no harm. It
-    ends earlier where the best of the last generations, or all of one, differ by less than the `tolerance`: of chi2, 1
-    is one standard deviation. `over` maps the cost over a generation. Equal input gives equal points.
+    The first points are drawn around `begin` with a `covariance`, shape (quantities, quantities), later ones from what
+    the better half of all before shows, within `bounds`. Only the order of costs counts, so jumps of a cost do no harm.
+    The search ends earlier where the lowest costs of the last generations, or all of one, differ by less than the
+    `tolerance`: of chi2, 1 is one standard deviation. `over` maps the cost over a generation. Equal input gives equal
+    points.
 
     Source: N. Hansen, The CMA Evolution Strategy: A Tutorial, arXiv:1604.00772 (2016).
     """
@@ -52,11 +53,11 @@ def evolved(
 
 
 class _Population:
-    """Where `points` are drawn, and how fast it follows the better half of them.
+    """The distribution from which `points` are drawn, and how fast it follows the better half of them.
 
-    They lie around a `mean`, normally distributed, with a covariance of the square of `sigma` times a `shape`. Names in
-    the tutorial: `mass` mu_eff; the rates `step_rate` c_sigma, `path_rate` c_c, `one_rate` c_1, `many_rate` c_mu;
-    `damping` d_sigma (table 1 there); `usual` the mean length of a random step.
+    The points are normally distributed around a `mean`, with a covariance of the square of `sigma` times a `shape`.
+    Names in the tutorial: `mass` mu_eff; the rates `step_rate` c_sigma, `path_rate` c_c, `one_rate` c_1, `many_rate`
+    c_mu; `damping` d_sigma (table 1 there); `usual` the mean length of a random step.
     """
 
     def __init__(self, mean: Signal, covariance: Signal, points: int) -> None:
@@ -82,7 +83,7 @@ class _Population:
         return np.asarray(self.mean + self.sigma * steps @ self.directions.T)
 
     def learn(self, ordered: Signal) -> None:
-        """Move to the better half of the points, the best first, and take on the shape of the way there."""
+        """Move the mean to the better half of the points, the best first, and adapt the shape to this move."""
         size, step, path, one, many = self.mean.size, self.step_rate, self.path_rate, self.one_rate, self.many_rate
         self.learnt += 1
         moves = (ordered[: self.weights.size] - self.mean) / self.sigma

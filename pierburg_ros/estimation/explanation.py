@@ -10,7 +10,7 @@ from pierburg_ros.effects import EFFECT
 
 @dataclass(frozen=True)
 class Variant:
-    """One way in which an effect may act: which of its parameters are free, and the values of the others."""
+    """One way in which an effect may act: its free parameters, and the values of the others."""
 
     effect: str
     free: tuple[str, ...]
@@ -18,7 +18,7 @@ class Variant:
 
     @property
     def label(self) -> str:
-        """For people: the effect, and what is fixed about it."""
+        """Label for the user: the effect, and its fixed parameters."""
         fixed = ", ".join(f"{name} {value:g}" for name, value in self.fixed)
         return f"{self.effect} ({fixed})" if fixed else self.effect
 
@@ -26,12 +26,12 @@ class Variant:
 AFTER = "@after"
 """Marks the value of a parameter after its change in the middle of a recording."""
 WHEN = "@time"
-"""Marks the time [s] of that change."""
+"""Marks the time [s] of a change in the middle of a recording."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """Base parameters that have drifted, one that changed in the middle of the recording, and effects that act."""
+    """Base parameters that have drifted, one that changed in the middle of the recording, and the effects that act."""
 
     drifted: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
@@ -39,12 +39,12 @@ class Explanation:
 
     @property
     def size(self) -> int:
-        """How many quantities are changed: each drifted parameter and each effect counts one."""
+        """Number of changed quantities: each drifted parameter, the changed parameter and each effect count one."""
         return len(self.drifted) + len(self.variants) + (self.changed is not None)
 
     @property
     def label(self) -> str:
-        """For people: what it changes."""
+        """Label for the user: the quantities that it changes."""
         change = (f"change of {self.changed}",) if self.changed else ()
         return " + ".join((*self.drifted, *change, *(variant.label for variant in self.variants))) or "nominal"
 
@@ -63,7 +63,7 @@ class Explanation:
 
     @property
     def fixed(self) -> dict[str, float]:
-        """Values by dotted name that the variants fix."""
+        """The values that the variants fix, by dotted name."""
         return {f"{v.effect}.{name}": value for v in self.variants for name, value in v.fixed}
 
     def plus(self, variant: Variant) -> Explanation:
@@ -72,12 +72,12 @@ class Explanation:
 
 
 def jumps(explanation: Explanation) -> bool:
-    """Whether events jump as its values change, so that its cost has many local minima."""
+    """Whether events jump as the values change, so that the cost has many local minima."""
     return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
 def moments(variant: Variant) -> list[str]:
-    """Dotted names of the moments of an effect that are searched, in their order."""
+    """Dotted names of the moments of an effect that are fitted, in their order."""
     declared = EFFECT[variant.effect].parameters
     return [f"{variant.effect}.{each.name}" for each in declared if each.moment and each.name in variant.free]
 
@@ -87,13 +87,13 @@ Quantity = str | Variant
 
 
 def quantities(explanation: Explanation) -> tuple[Quantity, ...]:
-    """What an explanation changes, one by one."""
+    """The quantities that an explanation changes."""
     changed = (explanation.changed,) if explanation.changed else ()
     return (*explanation.drifted, *changed, *explanation.variants)
 
 
 def without(explanation: Explanation, quantity: Quantity) -> Explanation:
-    """The explanation less one of its quantities."""
+    """The explanation without one of its quantities."""
     return Explanation(
         tuple(name for name in explanation.drifted if name != quantity),
         tuple(variant for variant in explanation.variants if variant != quantity),
@@ -102,7 +102,7 @@ def without(explanation: Explanation, quantity: Quantity) -> Explanation:
 
 
 def canonical(explanation: Explanation, order: Sequence[str]) -> Explanation | None:
-    """The same explanation with what may drift in this `order`; None where a quantity stands twice."""
+    """The same explanation with its drifts in this `order`; None where a quantity occurs twice or may not drift."""
     drifted = tuple(name for name in order if name in explanation.drifted)
     effects = explanation.effects
     always = {name.split(".")[0] for name in order if "." in name}

@@ -1,4 +1,4 @@
-"""How sure the values of a fit are: 95 % intervals, from the curvature of the cost and along its valley."""
+"""95 % confidence intervals of fitted values, from the curvature of the cost and along its valley."""
 
 from __future__ import annotations
 
@@ -20,23 +20,24 @@ from pierburg_ros.estimation.likelihood import SURE, TIED
 from pierburg_ros.estimation.slopes import FINE, sharp
 
 DOUBLINGS = 7
-"""How often the reach of an interval is doubled at most: 128 times what the curvature says. Work: each costs up to
-three brief descents; an interval that wide is not identifiable anyway."""
+"""Largest number of times that the reach of an interval is doubled: up to 128 times the reach from the curvature. Work:
+each costs up to three brief descents; an interval that wide is not identifiable anyway."""
 PATIENCE = 3
-"""How many reaches without success end the search where events jump. Work: a descent may have ended in a local
-minimum, so one failure is no end; each costs up to three brief descents."""
+"""Number of reaches without success that end the search where events jump. Work: a descent may have ended in a local
+minimum, so one failure does not end the search; each costs up to three brief descents."""
 HALF_WAY = 1.5
-"""Reach, in that of the last success, half way to the next one. Derived: the mean of 1 and 2, as reaches double."""
+"""Reach half way to the next one, in units of the reach of the last success. Derived: the mean of 1 and 2, as reaches
+double."""
 HALF_KNOWN = 0.5
-"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: a value
-known to no better than a half is none to act on; a convention of the report."""
+"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: nobody
+should act on a value known to no better than a half; a convention of the report."""
 
 Map = Callable[..., Iterable[Any]]
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value with its 95 % interval and whether the data fix it."""
+    """A value with its 95 % interval, and whether the data determine it."""
 
     value: float
     low: float
@@ -45,7 +46,7 @@ class Estimate:
 
 
 def covariance(estimator: Estimator, fit: Fit) -> tuple[Covariance, Signal]:
-    """Covariance of a fit's coordinates, and the slopes [noise] that it comes from, shape (samples, quantities)."""
+    """Covariance of a fit's coordinates, and the slopes [noise] from which it follows, shape (samples, quantities)."""
     coordinates = estimator.coordinates(fit.explanation)
 
     def residual(point: Signal) -> Signal:
@@ -60,20 +61,20 @@ def covariance(estimator: Estimator, fit: Fit) -> tuple[Covariance, Signal]:
 def estimates(estimator: Estimator, fit: Fit, over: Map = map) -> dict[str, Estimate]:
     """Value and interval of each free quantity by dotted name; `over` maps a function over the ends to be found.
 
-    A first interval is that of the covariance. Where events jump with the values, the slope at the fit is that of a
-    local minimum and the interval too short: each end is therefore moved on while the others, fitted again, keep chi2
-    within what 95 % allows (profile likelihood; Murphy and van der Vaart, On Profile Likelihood, J. Am. Stat. Assoc.
-    95, 2000). The cost has steps along a moment, since it counts for nothing while the shaft stands still: its interval
-    reaches at least to where the step of the fit ends.
+    The first interval is that of the covariance. Where events jump with the values, the slope at the fit is that of a
+    local minimum, and this interval is too short. The search therefore moves each end outwards and fits the other
+    quantities again, while chi2 stays within what 95 % allows (profile likelihood; Murphy and van der Vaart, On Profile
+    Likelihood, J. Am. Stat. Assoc. 95, 2000). The cost has steps along a moment, since a moment has no influence while
+    the shaft stands still. The interval of a moment reaches at least to the end of the step with the fit.
     """
     return _profiled(estimator, fit, over)[0]
 
 
 def lowest_with_estimates(estimator: Estimator, fit: Fit, over: Map = map) -> tuple[Fit, dict[str, Estimate]]:
-    """`fit`, or a lower one that the ends of its intervals come upon where events jump, and the `estimates` at it.
+    """`fit`, or a lower one found at the ends of its intervals where events jump, and the `estimates` at it.
 
-    An end is looked for with the other quantities fitted again and again, far along the valley: a way out of a local
-    minimum that descents from around it do not take.
+    The search for an end fits the other quantities again and again, far along the valley. This is a way out of a local
+    minimum that descents from nearby do not take.
     """
     while True:
         known, allowed = _profiled(estimator, fit, over)
@@ -87,7 +88,7 @@ def lowest_with_estimates(estimator: Estimator, fit: Fit, over: Map = map) -> tu
 
 
 def _profiled(estimator: Estimator, fit: Fit, over: Map) -> tuple[dict[str, Estimate], list[dict[str, float]]]:
-    """The `estimates` at a fit, and all values that they allow."""
+    """The `estimates` at a fit, and the values at all points that the intervals must include."""
     names = fit.explanation.names
     if not names:
         return {}, []
@@ -115,9 +116,9 @@ def _profiled(estimator: Estimator, fit: Fit, over: Map) -> tuple[dict[str, Esti
 
 
 def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: float) -> float:
-    """How far a quantity moves alone until chi2 passes the `limit`, to the step with which slopes are taken.
+    """Distance that a quantity can move alone until chi2 passes the `limit`, to within the step for slopes.
 
-    At most to its bound. A load may begin at any moment while the shaft stands still.
+    The distance ends at the bound. Example: a load may begin at any moment while the shaft stands still.
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = (float(bound[place]) for bound in coordinates.bounds)
@@ -138,17 +139,17 @@ def _plateau(estimator: Estimator, fit: Fit, place: int, side: float, limit: flo
 
 
 def _is_moment(name: str) -> bool:
-    """Whether a quantity is a moment: of a change, or when an effect begins or ends."""
+    """Whether a quantity is a moment: the time of a change, or that at which an effect begins or ends."""
     return name.endswith(WHEN) or (name in DECLARED and DECLARED[name].moment)
 
 
 def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float, rough: bool) -> list[Signal]:
-    """Points that an interval must hold: `reach` away along one of the coordinates, then in the valley.
+    """Points that an interval must include: one at `reach` along one of the coordinates, then others along the valley.
 
-    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`. Three starts are tried: where
-    the valley leads, where it was last, and the best values. Where events jump, `PATIENCE` reaches without success end
-    the search, and half way from the last success to the next reach is tried as well: an end found by doubling may lie
-    at half of what is allowed.
+    Further out the other quantities are fitted again, as long as chi2 keeps the `limit`. Each fit has three starts: the
+    valley extrapolated, the valley at the last success, and the best values. Where events jump, `PATIENCE` reaches
+    without success end the search. The point half way from the last success to the next reach is then tried as well: an
+    end found by doubling may lie at half of the allowed distance.
     """
     coordinates = estimator.coordinates(fit.explanation)
     lower, upper = coordinates.bounds
@@ -161,9 +162,9 @@ def _ends(estimator: Estimator, fit: Fit, place: int, reach: float, limit: float
         return np.asarray(point)
 
     def fitted(distance: float, valley: Signal, further: float) -> Solution:
-        """The best fit at so great a distance, from the valley that leads there by a factor `further`.
+        """The best fit at a `distance`; `further` is the factor by which the valley is extrapolated to it.
 
-        A smooth cost needs no better one than the first that keeps the limit.
+        For a smooth cost, the first fit within the limit is enough.
         """
         starts = (moved(distance, further * valley), moved(distance, valley), moved(distance, nowhere))
         solutions: list[Solution] = []

@@ -1,4 +1,4 @@
-"""Bounded Levenberg-Marquardt for simulations: rough costs, few parameters, many samples."""
+"""Bounded Levenberg-Marquardt for simulations, which have rough costs, few parameters and many samples."""
 
 from __future__ import annotations
 
@@ -15,27 +15,28 @@ Residual = Callable[[Signal], Signal]
 Map = Callable[..., Iterable[Any]]
 
 FULL = 25
-"""Iterations after which a descent ends that still gains. Work: n = 148 descents took 15 simulations each on average,
-slopes but the last included, and 145 ended within 2 % of the lowest; after 6 it is 14 and 144."""
+"""Number of iterations after which a descent that still gains ends. Work: n = 148 descents took 15 simulations each on
+average, slopes but the last included, and 145 ended within 2 % of the lowest; after 6 iterations it is 14 and 144."""
 BRIEF = 8
-"""Iterations of a descent that is one of several to choose from; half as many where it starts beside its end. Work: a
-descent that is worth more is carried on; not varied."""
+"""Iterations of a descent that is one of several to choose from; half as many where it starts near its end. Work: a
+descent that is worth more is continued; not varied."""
 AS_FORESEEN = 0.9
-"""Share of the foreseen fall of the cost from which slopes from elsewhere serve for a step. Measured: static friction
-that the Coulomb friction can stand for gave 0.81 with slopes from where there is none, and led astray (n = 1)."""
+"""Share of the predicted decrease of the cost from which slopes from elsewhere serve for a step. Measured: static
+friction that Coulomb friction can replace gave 0.81 with slopes from a point without static friction, and the step led
+astray (n = 1)."""
 TOLERANCE = 1e-4
-"""Share of the cost that an iteration has to lower it by for a descent to go on. Derived: of the 22,500
-samples that train in a minute it is 2 of chi2, about what chance gives one quantity."""
+"""Share of the cost by which an iteration must lower it for a descent to go on. Derived: for the 22,500 training
+samples of a minute it is 2 of chi2, about what chance gives one quantity."""
 FOLLOWED = 0.25
-"""Share of the foreseen fall of the cost from which a step's slopes serve for the next one as well. Measured: over n =
-188 descents to 42 trials (seeds 31 and 32) 0, 0.25, 0.5 and 0.75 take 2,304, 2,244, 2,297 and 2,326 simulations, and
-185, 184, 184 and 184 of them end within 2 % of the lowest; with slopes anew for each step 2,995 and 182."""
+"""Share of the predicted decrease of the cost from which a step's slopes also serve for the next one. Measured: n = 188
+descents to 42 trials (seeds 31 and 32). With 0, 0.25, 0.5 and 0.75 they take 2,304, 2,244, 2,297 and 2,326 simulations,
+and 185, 184, 184 and 184 of them end within 2 % of the lowest. With new slopes for each step it is 2,995 and 182."""
 LIGHTEST = 1e-9
-"""Least damping of a step. Derived: far above rounding, so that quantities with the same slopes, or without, can be
+"""Smallest damping of a step. Derived: far above rounding, so that quantities with the same slopes, or without, can be
 solved for."""
 REJECTED = 6
-"""Steps that may fail to lower the cost before a descent ends. Derived: the damping has then grown by 8 x 16 x ... x
-256, almost 1e10, and the step shrunk as much."""
+"""Number of steps that may fail to lower the cost before a descent ends. Derived: the damping has then grown by 8 x 16
+x ... x 256, almost 1e10, and the step has shrunk as much."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class _Place:
 
 @dataclass(frozen=True)
 class _Tangent:
-    """What slopes at a place foresee elsewhere; `normal` is slopes' slopes, `gradient` slopes' residual."""
+    """The linear prediction from slopes at a place; `normal` is slopes' slopes, `gradient` slopes' residual."""
 
     place: _Place
     slopes: Signal
@@ -62,16 +63,16 @@ class _Tangent:
 
     @staticmethod
     def at(place: _Place, slopes: Signal) -> _Tangent:
-        """With `slopes` as they are, shape (samples, quantities)."""
+        """The linear prediction with these `slopes`, shape (samples, quantities)."""
         return _Tangent(place, slopes, slopes.T @ slopes, slopes.T @ place.value)
 
     def fall(self, point: Signal) -> float:
-        """By how much less the cost is foreseen to be at a `point`."""
+        """The predicted decrease of the cost at a `point`."""
         move = point - self.place.point
         return float(-(2.0 * self.gradient + self.normal @ move) @ move)
 
     def corrected(self, there: _Place) -> _Tangent:
-        """From another place, slopes changed as little as can be so that they had foreseen it (Broyden's update)."""
+        """The prediction from another place, with slopes changed as little as can be to match it (Broyden's update)."""
         move = there.point - self.place.point
         missed = there.value - self.place.value - self.slopes @ move
         unit = move / max(float(move @ move), 1e-300)
@@ -83,7 +84,7 @@ class _Tangent:
 
 @dataclass(frozen=True)
 class Solution:
-    """Where a descent ended: the point and the residual there."""
+    """The end of a descent: the point and the residual there."""
 
     point: Signal
     residual: Signal
@@ -96,7 +97,7 @@ class Solution:
 
     @cached_property
     def jacobian(self) -> Signal:
-        """Derivative of the residual at the point, shape (samples, quantities); taken when first asked for."""
+        """Derivative of the residual at the point, shape (samples, quantities); computed at its first use."""
         return self.slope()
 
 
@@ -114,14 +115,14 @@ def minimise(
 ) -> Solution:
     """Least squares of `residual` within bounds from `start`; finite differences of size `step`.
 
-    Quantities whose bounds coincide stay where they are. Each iteration takes slopes by differences and goes on with
-    them, as each step corrects them, while the cost falls (the secant version of Levenberg-Marquardt: Madsen, Nielsen,
-    Tingleff, Methods for non-linear least squares problems, 2004, section 3.4). It ends after so many `iterations`,
-    when one lowers the cost by less than `tolerance` of it, or, after a last step, when its slopes foresee no more than
-    that; also when nothing lowers the cost, and where it is `enough`. The damping is Marquardt's: relative to the
-    curvature of each quantity, divided by five after a step that lowers the cost, multiplied faster and faster while
-    steps do not. `over` maps a function over the columns of a Jacobian, on several cores or on one. Known `slopes` from
-    nearby make the first steps, while the cost falls as they foresee.
+    Quantities whose bounds coincide stay where they are. Each iteration takes slopes by differences. It goes on with
+    them, corrected after each step, while the cost falls (the secant version of Levenberg-Marquardt: Madsen, Nielsen,
+    Tingleff, Methods for non-linear least squares problems, 2004, section 3.4). The descent ends after so many
+    `iterations`, or when one lowers the cost by less than `tolerance` of it. It also ends after a last step if the
+    slopes predict no more than that, when no step lowers the cost, and where the cost is at most `enough`. The damping
+    is Marquardt's: relative to the curvature of each quantity. It is divided by five after a step that lowers the cost,
+    and multiplied faster and faster while steps do not. `over` maps a function over the columns of a Jacobian, on
+    several cores or on one. Known `slopes` from nearby make the first steps, while the cost falls as they predict.
     """
     free = upper > lower
 
@@ -164,7 +165,10 @@ def minimise(
 def jacobian(
     residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal, over: Map = map
 ) -> Signal:
-    """Derivative of `residual` at `point`, where it is `value`, by one-sided differences away from a bound."""
+    """Derivative of `residual`, which is `value` at `point`, by one-sided differences; shape (samples, quantities).
+
+    The differences point away from a bound.
+    """
     if point.size == 0:
         return np.zeros((value.size, 0))
     signed = np.where(point + step <= upper, step, -step)
@@ -187,7 +191,7 @@ def _foreseen(
     tolerance: float,
     enough: float,
 ) -> _Place:
-    """Where steps with the same slopes lead while the cost falls as they foresee (the simplified Newton method)."""
+    """The place after steps with the same slopes, while the cost falls as predicted (the simplified Newton method)."""
     while at.cost > enough:
         line = _Tangent.at(at, slopes)
         point = aim(line, LIGHTEST)
@@ -202,7 +206,7 @@ def _foreseen(
 
 
 def _step(line: _Tangent, lower: Signal, upper: Signal, free: Flags, damping: float) -> Signal:
-    """Where a damped Gauss-Newton step leads; a quantity that a bound stops is left out and the rest solved again."""
+    """The point after a damped Gauss-Newton step; without a quantity that a bound stops, the rest is solved again."""
     normal, gradient, point = line.normal, line.gradient, line.place.point
     while free.any():
         inner = normal[np.ix_(free, free)]

@@ -1,4 +1,4 @@
-"""A recording in pieces with a known input: what is simulated starts again where messages are missing."""
+"""A recording cut into pieces with a known input: the simulation starts again where messages are missing."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from pierburg_ros.recording.noise import noise_of
 
 SEEN = 1.0
 """Error of the angle, in noises of the sensor, that one unknown stretch of the input may cause without the simulation
-starting again after it. Derived: one noise of the sensor; more would be seen."""
+starting again after it. Derived: one noise of the sensor; a larger error would be detected."""
 
 ALIKE = 0.05
-"""Differences of the length of unknown stretches that make none, as a share of the shortest. Work: each
-length is looked at by itself."""
+"""Difference between the lengths of unknown stretches that counts as none, as a share of the shortest. Work: each
+length is evaluated by itself."""
 KNOWN = 1000
-"""Moments at which the known duty is looked at. Derived: their median is known to 1.25 / sqrt(1000) = 4 %."""
+"""Number of moments at which the known duty is evaluated. Derived: their median is known to 1.25 / sqrt(1000) = 4 %."""
 
 
 @dataclass(frozen=True)
 class Pieces:
     """The parts of a recording that can be simulated, times unchanged.
 
-    `uncertainty` is what the losses within them may add to the error, as a standard deviation in the measured unit;
-    `left_out` are spans [s] whose input is not known.
+    `uncertainty` is the standard deviation [measured unit] of the error that the losses within them may add. `left_out`
+    are spans [s] whose input is not known.
     """
 
     parts: list[Recording]
@@ -43,8 +43,8 @@ class Pieces:
 def pieces(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> Pieces:
     """`recording` cut where a missing duty may have moved the shaft by more than the noise, and `without` some spans.
 
-    Elsewhere the duty is taken to have changed half way through: held until the next message it would always come
-    late. What that leaves adds up over the time in which `model` forgets an error.
+    Elsewhere the duty is taken to have changed half way through: a duty held until the next message would always change
+    late. The error that remains adds up over the time in which `model` forgets an error.
     """
     unknown = recording.unknown_input
     if not unknown:
@@ -60,10 +60,11 @@ def pieces(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -
 
 
 def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:
-    """By how much the mean duty in each unknown span may differ from the mean of what is known on either side.
+    """Error of the mean duty in each unknown span against the mean of the known duties on either side, shape (spans,).
 
-    A step from one to the other may have come at any moment, which makes its size over the square root of 12. What
-    the duty does in between otherwise is seen where it is known: the median error of the same mean over such a time.
+    A step from one to the other may have come at any moment: its error is its size over the square root of 12. Other
+    changes of the duty are estimated where it is known: the median error of the same mean over such a time. The larger
+    error counts.
     """
     step = np.abs(duty.at(ends, before=0.0) - duty.at(starts, before=0.0)) / math.sqrt(12.0)
     begins = np.linspace(duty.time[0], duty.time[-1], KNOWN)
@@ -80,7 +81,7 @@ def _doubt(duty: Channel, starts: Signal, ends: Signal) -> Signal:
 
 
 def _halved(duty: Channel, starts: Signal, ends: Signal) -> Channel:
-    """The duty with, in each span, the mean of what was before and what comes after in force until the end."""
+    """The duty with the mean of the values before and after each span in force until the end of the span."""
     if not starts.size:
         return duty
     interval = float(np.median(np.diff(duty.time)))

@@ -1,4 +1,4 @@
-"""Descents to other local minima around a fit: where events jump with the values, a descent ends in the nearest."""
+"""Search for other local minima around a fit: where events jump with the values, a descent ends in the nearest one."""
 
 from __future__ import annotations
 
@@ -15,48 +15,51 @@ from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.prior import KNOWN
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
-"""How far to look along each axis of the cost, in standard deviations of the fit. Measured: together with `LEAPS` and
-`SCAN`, 35 of n = 36 poor starts of static friction reach the noise; the values themselves were not varied."""
+"""Distances of the search along each axis of the cost, in standard deviations of the fit. Measured: together with
+`LEAPS` and `SCAN`, 35 of n = 36 poor starts of static friction reach the noise; the values themselves were not
+varied."""
 LEAPS = {(-0.1, -0.05, 0.05, 0.1): 1, (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0): 3}
-"""Logarithms of the factors by which the first round moves parameters that are searched by theirs, near and far, and
-from how many of the best points so found descents start. Measured: together with `REACHES` (n = 36); the values
-themselves were not varied."""
+"""Logarithms of the factors by which the first round moves logarithmic parameters, near and far, and from how many of
+the best points found descents start. Measured: together with `REACHES` (n = 36); the values themselves were not
+varied."""
 SCAN = np.outer([-1.0, 1.0], np.concatenate([np.geomspace(0.002, 0.02, 8), np.linspace(0.04, 0.5, 24)])).ravel()
-"""Shares by which each other parameter of the same effect is then moved: the valley bends, and runs beside a cliff.
-Measured: with it 35 of n = 36 poor starts of static friction reach the noise, without it 33; 64 points, dense where a
-needle may lie."""
+"""Shares by which each other parameter of the same effect is moved after a leap, since the valley bends and runs beside
+a cliff. Measured: with it 35 of n = 36 poor starts of static friction reach the noise, without it 33. The 64 points are
+dense where a narrow minimum may lie."""
 FINEST = 1e-2
-"""Least difference for a Jacobian, as a share of the usual one. Chosen: it keeps narrow valleys passable, a needle
-0.001 N.m wide was seen in a trial; not varied."""
+"""Smallest difference for a Jacobian, relative to the usual one. Chosen: it keeps narrow valleys passable; one that was
+0.001 N.m wide was found in a trial. Not varied."""
 COARSEST = 10.0
-"""Largest difference for a Jacobian, as a share of the usual one. Chosen: it looks across jumps of single samples; 40
+"""Largest difference for a Jacobian, relative to the usual one. Chosen: it looks across jumps of single samples; 40
 times the usual one was tried on a trial of static friction (n = 1) and left it unexplained."""
 ROUNDS = 6
-"""How often a better point is descended from. Work: it ends sooner after two rounds without a gain; not varied."""
+"""Largest number of rounds of descents. Work: the search ends sooner after two rounds without a gain; not varied."""
 AGAIN = 0.5
-"""Share of the cost below which it starts between rests once more, where something is left. Chosen: a fall by half says
-that it began in another valley; not varied."""
+"""Share of the cost below which the search between rests starts again, if a residual remains. Chosen: a fall by half
+shows that the search began in another valley; not varied."""
 NEARLY = 5.0
-"""Training error over noise up to which the best explanation may only have stopped too early: a population goes on,
-and a search does not resign; and that of the likeliest over the least up to which it may. Chosen: descents to true
-explanations were seen to stop at 1.25 to 16 times the noise (n = 2 trials), one likeliest at 1.9 times the least, and a
-search resigned at 1.18 times the noise whose truth was found 18 s later; not varied."""
+"""Training error over noise up to which the best explanation may only have stopped too early: a population continues,
+and a search does not resign. The most likely explanation may have stopped too early up to this multiple of the smallest
+error. Chosen: descents to true explanations stopped at 1.25 to 16 times the noise (n = 2 trials), one most likely at
+1.9 times the smallest error. A search resigned at 1.18 times the noise, and its truth was found 18 s later; not
+varied."""
 POINTS = 4
-"""Points of a population for each quantity. Measured: with 12 for three quantities each of n = 3 searches along whole
-recordings of static friction beside a drift comes from 1.12 times the noise to 1.02, where the true values are; with 7
-one of six comes to 1.03."""
+"""Points of a population for each quantity. Measured: n = 3 searches with three quantities, along whole recordings of
+static friction beside a drift. With 12 points, each comes from 1.12 times the noise to 1.02, where the true values are.
+With 7, one of six comes to 1.03."""
 GENERATIONS = 50
-"""How often they are drawn anew. Work: a search that gains comes near its end after 15 to 40; not varied otherwise."""
+"""Largest number of generations of a population. Work: a search that gains comes near its end after 15 to 40; not
+varied otherwise."""
 WIDEST = 0.25
-"""Share of a parameter's range beyond which nothing is looked for. Chosen: an axis along which the data say nothing
+"""Largest distance of the search, as a share of a parameter's range. Chosen: an axis along which the data say nothing
 would lead out of all bounds; not varied."""
 
 
 def refined(estimator: Estimator, fit: Fit) -> Fit:
-    """`fit`, or a better one of the same explanation, descended to from points on the axes of its cost.
+    """`fit`, or a better one of the same explanation, by descents from points on the axes of its cost.
 
-    Where the shaft rests, first between its rests: far away only these costs are smooth enough to look for minima. Near
-    the noise single slips make steps in the cost, and a population of points looks for the lowest.
+    Where the shaft rests, the search starts between its rests: far from the minimum only this cost is smooth enough.
+    Near the noise, single slips make steps in the cost, and a population of points searches for the lowest.
     """
     if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
         return replace(_descended(estimator, fit, leaping=True), refined=True)
@@ -68,12 +71,12 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def lowered(estimator: Estimator, fit: Fit) -> Fit:
-    """`fit`, or a better one of the same explanation from a minimum near by."""
+    """`fit`, or a better one of the same explanation in a minimum nearby."""
     return _descended(estimator, fit, leaping=False) if fit.explanation.names else fit
 
 
 def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
-    """`fit`, or a lower one, descended to between rests first and then along whole recordings."""
+    """`fit`, or a lower one, by descents between rests first and then along whole recordings."""
     rests = estimator.between_rests
     smooth = _descended(rests, rests.fit(fit.explanation, fit.values), leaping)
     nearest = min(fit, estimator.fit(fit.explanation, smooth.values), key=lambda each: each.chi2)
@@ -81,10 +84,10 @@ def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
 
 
 def _evolved(estimator: Estimator, fit: Fit) -> Fit:
-    """`fit`, or a lower one that a population around it has come to: one slip more or less makes a step in the cost.
+    """`fit`, or a lower one from a population around it: one slip more or less makes a step in the cost.
 
-    Points are drawn to where chi2 has risen by itself, by slopes over the usual differences, and no further than what
-    is usual. Slopes over finer ones, as the last descent may have left them, are those of a single step.
+    The population spreads to where chi2 has doubled, by slopes over the usual differences, and no further than usual
+    deviations. Slopes over finer differences, which the last descent may have left, are those of a single step.
     """
     explanation, coordinates = fit.explanation, estimator.coordinates(fit.explanation)
     slopes = estimator.restated(fit).solution.jacobian
@@ -100,12 +103,12 @@ def _evolved(estimator: Estimator, fit: Fit) -> Fit:
 
 
 def _descended(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
-    """`fit`, or the lowest that rounds of descents have led to.
+    """`fit`, or the lowest fit to which rounds of descents have led.
 
-    One descent starts at the lowest of many points. Others start half the longest reach along the weakest axis, and, if
-    it is `leaping`, in the first round where leaps along logarithmic parameters land: the valley of the cost bends, so
-    that no point on a straight line shows how low it runs there. Rounds take fine and coarse differences for the
-    Jacobian in turn. It ends when neither helps.
+    One descent starts at the lowest of many points. From the second round on, others start at half the longest reach
+    along the weakest axis. In the first round of a `leaping` search, others start where leaps along logarithmic
+    parameters land. The valley of the cost bends, so no point on a straight line shows how low it runs there. Rounds
+    take fine and coarse differences for the Jacobian in turn. The search ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):
@@ -125,7 +128,7 @@ def _descended(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
 
 
 def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
-    """Where to descend from after a leap of one parameter: the lowest points among scans of those beside it."""
+    """Starts of descents after a leap of one parameter: the lowest points among scans of the parameters beside it."""
     names, landings = fit.explanation.names, []
     axes, units = estimator.coordinates(fit.explanation).axes, np.eye(len(names))
     for leaps, most in LEAPS.items():
@@ -142,14 +145,14 @@ def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
 
 
 def _measured(estimator: Estimator, fit: Fit, moves: list[Signal]) -> list[tuple[float, dict[str, float]]]:
-    """The cost where each of the `moves` leads, and the values there."""
+    """The cost after each of the `moves`, and the values there."""
     places = [_values(estimator, fit, move) for move in moves]
     costs = estimator.over(partial(estimator.chi2_at, fit.explanation), places)
     return list(zip(costs, places, strict=True))
 
 
 def _steps(estimator: Estimator, fit: Fit, coarse: bool) -> Signal:
-    """Differences for the Jacobian: what the data tell apart, within limits, or the largest."""
+    """Differences for the Jacobian: those that the data distinguish, within limits, or the largest."""
     usual = estimator.coordinates(fit.explanation).steps
     if coarse:
         return COARSEST * usual
@@ -158,13 +161,13 @@ def _steps(estimator: Estimator, fit: Fit, coarse: bool) -> Signal:
 
 
 def _lowest(estimator: Estimator, fit: Fit, axes: list[Signal]) -> dict[str, float]:
-    """Values at the lowest point on the axes, those of `fit` where none is lower."""
+    """Values at the lowest point on the axes; those of `fit` where none is lower."""
     moves = [side * axis for axis in axes for reach in REACHES for side in (-reach, reach)]
     return min([(fit.chi2, fit.values), *_measured(estimator, fit, moves)], key=lambda point: point[0])[1]
 
 
 def _values(estimator: Estimator, fit: Fit, move: Signal) -> dict[str, float]:
-    """Values where `move` leads from `fit`, within bounds."""
+    """Values after a `move` from `fit`, within bounds."""
     coordinates = estimator.coordinates(fit.explanation)
     return coordinates.values(np.clip(fit.solution.point + move, *coordinates.bounds))
 

@@ -1,9 +1,9 @@
-"""Recordings cut where the shaft rests: what slips at the wrong moment then displaces nothing beyond the next rest.
+"""Recordings cut where the shaft rests, so that a slip at the wrong moment displaces nothing beyond the next rest.
 
 Dry friction lets the shaft rest anywhere, so the cost of a whole recording is rough: one slip that comes early moves
-all that follows. Where the shaft rests its state is known but for the noise, so that each part may begin there
-(multiple shooting: Bock, Plitt, IFAC Proceedings 17 (1984) 1603-1608). What a model else remembers, such as heat,
-starts afresh: the values so found are where a fit to whole recordings begins.
+all that follows. Where the shaft rests, its state is known except for the noise, so each part may begin there (multiple
+shooting: Bock, Plitt, IFAC Proceedings 17 (1984) 1603-1608). All other memory of a model, such as heat, starts afresh.
+The values found in this way are therefore the start of a fit to whole recordings.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pierburg_ros.estimation.run import Run
 
 
 def cut_at_rests(data: Data) -> Data:
-    """`data` with every run cut in the middle of each rest; what begins again and again anyway stays as it is."""
+    """`data` with every run cut in the middle of each rest; a run that is simulated in stretches stays as it is."""
     return replace(data, runs=tuple(part for run in data.runs for part in _parts(run)))
 
 

@@ -1,4 +1,4 @@
-"""A recording ready to be simulated many times: its inputs, its samples, and where the simulation starts."""
+"""A recording ready to be simulated many times: its inputs, its samples and its initial state."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ class Switch:
 class Run:
     """One recording, ready to be simulated.
 
-    `time` [s] and `measured` (in the recording's unit), shape (samples,); `start` is what the first samples say.
-    `train` and `validation` mark samples, shape (samples,): those that fits use, and those that choose between
-    explanations that fit alike. The rest tests, and neither fit nor choice sees it. `decoder` is the
-    model by whose sensor a Hall voltage was turned into the recorded position, None where it was not.
-    `number` counts recordings: one that lacks messages makes several runs. With a `shooting` the simulation begins
-    again and again. `input_lag` [s] is that of a filter behind which the input was recorded, taken out of `inputs`.
-    `since` is when and how the whole recording began of which this is a later part, None where it is not.
+    `time` [s] and `measured` (in the recording's unit) have shape (samples,); `start` is the state at the first
+    samples. `train` and `validation`, shape (samples,), mark the samples for fits, and those that choose between
+    explanations that fit alike. The rest is for tests: neither fit nor choice uses it. `decoder` is the model by whose
+    sensor a Hall voltage was turned into the recorded position, None where it was not. `number` counts recordings: a
+    recording that lacks messages makes several runs. With a `shooting`, the run is simulated in stretches. `input_lag`
+    [s] is that of a filter behind which the input was recorded; it is removed from `inputs`. `since` is the start time
+    of the whole recording and its initial state if this is a later part of it, otherwise None.
     """
 
     name: str
@@ -57,9 +57,9 @@ class Run:
     since: tuple[float, InitialState] | None = None
 
     def simulated(self, model: Model, switch: Switch | None = None) -> Signal:
-        """What `model` makes of the inputs, in the measured unit, shape (samples,).
+        """The response of `model` to the inputs, in the measured unit, shape (samples,).
 
-        With a `switch` another model takes over in the middle, and the state goes on.
+        With a `switch` another model takes over in the middle, and the state continues.
         """
         if self.shooting is not None:
             return self._shot(self.shooting, model, switch)
@@ -71,14 +71,14 @@ class Run:
         return output if self.decoder is None else decoded(self.decoder, output)
 
     def _lasting(self, model: Model) -> np.ndarray | None:
-        """What lasts, such as heat, from before the first sample; None where nothing was before."""
+        """The lasting state, such as heat, from before the first sample; None where nothing was before."""
         if self.since is None:
             return None
         time, start = self.since
         return lasting_state(model, self.inputs, time, self.time[0], *start.state(model, self.quantity))
 
     def _shot(self, shooting: Shooting, model: Model, switch: Switch | None) -> Signal:
-        """In stretches; the one in which another model takes over begins and ends with either's own."""
+        """The simulation in stretches; at a switch it changes from that of one model to that of the other."""
         output = shooting.simulated(model, self.inputs, self.time, self.measured, self.quantity)
         if switch is None:
             return output
@@ -90,7 +90,7 @@ class Run:
         return self.part(slice(0, max(int(np.searchsorted(self.time, self.time[0] + duration)), 2)))
 
     def part(self, kept: slice) -> Run:
-        """Some successive samples of the run."""
+        """The run with the successive samples `kept` only."""
         time, measured = self.time[kept], self.measured[kept]
         again = self.shooting and Shooting.of(time, measured, self.shooting.length, self.quantity)
         return replace(
@@ -103,15 +103,16 @@ class Run:
         )
 
     def trained_on(self, train: Flags) -> Run:
-        """The run with other samples training, shape (samples,); what trains validates no longer."""
+        """The run with other samples for training, shape (samples,); these no longer validate."""
         return replace(self, train=train, validation=self.validation & ~train)
 
 
 def parts_of(recording: Recording, model: Model, without: tuple[Span, ...] = ()) -> tuple[list[Recording], Pieces]:
-    """The parts of `recording` that can be simulated, each from a standstill, and how it was cut: `without` some spans.
+    """The parts of `recording` that can be simulated, `without` some spans, and how it was cut.
 
-    One part where nothing is missing; of more, each has at least twice the samples that tell where the shaft stands.
-    InputError where none can be simulated.
+    Each part starts from a standstill if the actuator forgets its initial state. There is one part where nothing is
+    missing. Of several parts, each has at least twice the samples that determine where the shaft stands. InputError
+    where no part can be simulated.
     """
     fewest = 2 * EVEN
     still = forgets(model.actuator)
@@ -129,7 +130,7 @@ def parts_of(recording: Recording, model: Model, without: tuple[Span, ...] = ())
 def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
     """The first part, and the others from where the shaft first rests.
 
-    Where it is in motion after a gap, a simulation that begins a little off would rest elsewhere.
+    If the shaft moves after a gap, a simulation that begins with a small error would rest elsewhere.
     """
     yield parts[0]
     for part in parts[1:]:
@@ -139,9 +140,9 @@ def _from_standstills(parts: list[Recording]) -> Iterator[Recording]:
 
 
 def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording | None = None) -> Run:
-    """`recording` from where the shaft first stands still, all of it training; InputError where it does not fit.
+    """`recording` from where the shaft first stands still, all of it for training; InputError where it does not fit.
 
-    It may be a part of a `whole` one, which says how the shaft came to where it stands and how warm it is.
+    It may be a part of a `whole` recording, which shows how the shaft came to its place and how warm it is.
     """
     actuator, whole = model.actuator, whole or recording
     if recording.input != actuator.input:
@@ -191,7 +192,7 @@ def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording
 
 
 def inputs_of(recording: Recording) -> Inputs:
-    """What drove the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
+    """The inputs of the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
 
     Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
     supply voltage the first one recorded.
@@ -207,10 +208,10 @@ def inputs_of(recording: Recording) -> Inputs:
 
 
 def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> Inputs:
-    """`inputs_of` a recording of a running actuator, seen to begin at `start`.
+    """`inputs_of` a recording that may begin while the actuator runs, with the initial state `start`.
 
-    Away from the closed stop only a duty holds the shaft against its spring: there the first one has been in force
-    before the recording began.
+    Away from the closed stop, only a duty holds the shaft against its spring. The first duty was then in force before
+    the recording began.
     """
     inputs = inputs_of(recording)
     angle, *_ = start.state(model, recording.quantity)
@@ -218,9 +219,9 @@ def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> 
 
 
 def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
-    """The samples of `recording` that can be simulated, and what `model` would have measured, shape (samples,).
+    """The samples of `recording` that can be simulated, and their simulation by `model`, shape (samples,).
 
-    InputError where it cannot be simulated.
+    InputError where none can be simulated.
     """
     parts, _ = parts_of(recording, Model.nominal(model.actuator))
     simulated = np.concatenate([run_of(part, model, whole=recording).simulated(model) for part in parts])

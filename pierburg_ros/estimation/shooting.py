@@ -1,9 +1,9 @@
-"""Simulations that begin again and again: for actuators that nothing brings back to where they should be.
+"""Simulation in stretches, for actuators that do not forget their initial state.
 
-A spring, or the back-EMF of a closed bridge, makes an actuator forget how it began; a pendulum or a free rotor driven
-by a current or a torque does not, and upright or between two poles an error even grows. There a recording is simulated
-in stretches, and where each begins is fitted with it (multiple shooting: Bock, Plitt, IFAC Proceedings 17 (1984)
-1603-1608, here with the states left open, and eliminated in each evaluation).
+A spring, or the back-EMF of a closed bridge, makes an actuator forget its initial state. A pendulum or a free rotor
+driven by a current or a torque does not forget it, and upright or between two poles an error even grows. Its recording
+is simulated in stretches, and a fit includes the initial state of each. (Multiple shooting: Bock, Plitt, IFAC
+Proceedings 17 (1984) 1603-1608, here with the states left open, and eliminated in each evaluation.)
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from pierburg_ros.plant.decode import angle_per_unit, decoded, trail, turned
 from pierburg_ros.recording.noise import noise_of
 
 FEWEST = 20
-"""Samples that a stretch has at least. Derived: its two unknowns then take a tenth of what it tells."""
+"""Smallest number of samples in a stretch. Derived: its two unknowns then take a tenth of its information."""
 TIMES = 2.0
 """Length of a stretch in times of the motion, velocity over acceleration: a third of a swing of a harmonic one.
-Derived: an unstable equilibrium as stiff as that swing makes an error exp(2) = 7 times larger in it, and the beginning
+Derived: an unstable equilibrium as stiff as that swing makes an error exp(2) = 7 times larger in it. The initial state
 is known to a fraction of the noise."""
 MOVING = 8.0
-"""Standard deviations of its rate from which a shaft moves so surely that a beginning stays in motion wherever it is
-moved. Below that friction may hold it there or not, and steps along slopes end anywhere. Measured: of n = 64 recordings
-of a pendulum that sticks, 19 had beginnings off by 4.5 to 220 standard deviations of their error at the true values,
-and with such beginnings 7; what is moved again (`shots.py`) mends the rest."""
+"""Rate of a shaft, in its standard deviations, from which the shaft certainly moves, wherever a fit moves its initial
+state. Below that, friction may or may not hold it, and steps along slopes end anywhere. Measured: of n = 64 recordings
+of a pendulum that sticks, 19 had initial states off by 4.5 to 220 standard deviations of their error at the true
+values. With this threshold, 7 have such states; the further steps (`shots.py`) correct the rest."""
 
 
 @dataclass(frozen=True)
 class Shooting:
-    """Where stretches begin and what the samples there say: all of shape (stretches,).
+    """The first samples of stretches and the state that they show; all of shape (stretches,).
 
-    `first` are their first samples, `level`, `rate` [1/s] and `curvature` [1/s^2] the measured value there and its
+    `first` are the first samples. `level`, `rate` [1/s] and `curvature` [1/s^2] are the measured value there and its
     derivatives, each with its standard deviation. `length` [s] is that of a stretch, `noise` that of the samples.
     """
 
@@ -58,7 +58,7 @@ class Shooting:
     def of(time: Signal, measured: Signal, length: float, quantity: str) -> Shooting:
         """Stretches of about `length` [s] over samples of a `quantity`.
 
-        Of an angle they begin where the shaft certainly moves, or rests for long.
+        For an angle they begin where the shaft certainly moves, or rests for long.
         """
         noise = noise_of(time, measured)
         if quantity == "speed":
@@ -73,7 +73,7 @@ class Shooting:
         return Shooting(first, level, rate, curvature, level_error, rate_error, curvature_error, length, noise)
 
     def simulated(self, model: Model, inputs: Inputs, time: Signal, measured: Signal, quantity: str) -> Signal:
-        """What a model measures, each stretch from the beginning that suits its samples best, shape (samples,)."""
+        """The simulation, each stretch from the initial state that fits its samples best, shape (samples,)."""
         shown = decoded(model, self.level, quantity)
         states = self._states(model, time, measured, quantity)
         return Shots(model, inputs, time, measured, quantity, self.noise, self.first, *states, shown).suited()
@@ -81,10 +81,10 @@ class Shooting:
     def _states(
         self, model: Model, time: Signal, measured: Signal, quantity: str
     ) -> tuple[Signal, Signal, Signal, Signal]:
-        """Angle [rad] and velocity [rad/s] that the samples show, and how far each may be off.
+        """Angle [rad] and velocity [rad/s] that the samples show, then the error of each, all of shape (stretches,).
 
-        What a sensor with a lag shows changes by as much as it is behind, over the lag: that is how far the shaft is
-        ahead, and so is its velocity.
+        The reading of a sensor with a lag changes by its distance behind the shaft, over the lag. The shaft is
+        therefore ahead by the rate times the lag, and so is its velocity.
         """
         scale = abs(angle_per_unit(model))
         value = decoded(model, self.level, quantity)
@@ -102,18 +102,18 @@ class Shooting:
 
 
 UNKNOWN_ANGLE = 0.064
-"""By how much the beginning of a stretch may be off where only the speed is measured, as a share of the travel or what
-stands in its place. Chosen: 0.1 rad for a pendulum; an angle that matters shows in the speed, and the fit may move it
-by several times as much; not varied."""
+"""Standard deviation of the initial angle of a stretch where only the speed is measured, as a share of the travel or
+what replaces it. Chosen: 0.1 rad for a pendulum. An angle that matters shows in the speed, and the fit may move it by
+several times as much; not varied."""
 
 
 def forgets(actuator: Actuator) -> bool:
-    """Whether an actuator forgets how it began: a spring or a closed bridge brings it back."""
+    """Whether an actuator forgets its initial state: a spring or a closed bridge brings it back."""
     return actuator.load == "spring" or actuator.drive == "voltage"
 
 
 def stretch_length(time: Signal, measured: Signal, quantity: str) -> float:
-    """Length [s] of stretches in which an error of the beginning stays small: a few times of the motion itself."""
+    """Length [s] of stretches in which an error of the initial state stays small: a few times of the motion itself."""
     interval = float(np.median(np.diff(time)))
     noise = noise_of(time, measured)
     first, second = (0, 1) if quantity == "speed" else (1, 2)
@@ -123,7 +123,7 @@ def stretch_length(time: Signal, measured: Signal, quantity: str) -> float:
 
 
 def spread(measured: Signal, order: int, interval: float, noise: float) -> float:
-    """Standard deviation of a derivative of `measured`, over a window in which the noise is the lesser part of it."""
+    """Standard deviation of a derivative of `measured`, over a window in which the noise is the smaller part of it."""
     from scipy.signal import savgol_coeffs  # takes long to load, and most actuators need none
 
     window, own, added = WINDOW, 0.0, 1.0
@@ -136,9 +136,10 @@ def spread(measured: Signal, order: int, interval: float, noise: float) -> float
 
 
 def _first_samples(time: Signal, length: float, told: Callable[[int], bool]) -> np.ndarray:
-    """The first sample of each stretch: about `length` [s] after the one before, and `FEWEST` samples at least.
+    """The first sample of each stretch: about `length` [s] after the one before, and at least `FEWEST` samples.
 
-    The nearest sample is taken that is `told`, of those that make a stretch half to one and a half times as long.
+    Of the samples that make a stretch half to one and a half times as long, the nearest for which `told` holds is
+    taken.
     """
     first = [0]
     while True:
@@ -153,7 +154,7 @@ def _first_samples(time: Signal, length: float, told: Callable[[int], bool]) -> 
 
 
 def _told(time: Signal, measured: Signal, sample: int, noise: float) -> bool:
-    """Whether samples tell how a stretch begins there: the shaft certainly moves, or it rests."""
+    """Whether the samples determine the initial state of a stretch there: the shaft certainly moves, or it rests."""
     _, rate, _, _, rate_error, curvature_error = _beginning(time, measured, sample, noise)
     return bool(curvature_error == 0.0 or abs(rate) > MOVING * rate_error)
 
@@ -161,7 +162,7 @@ def _told(time: Signal, measured: Signal, sample: int, noise: float) -> bool:
 def _beginning(time: Signal, measured: Signal, sample: int, noise: float) -> Signal:
     """Value, rate and curvature at a sample and their standard deviations: at rest, or of a parabola around it.
 
-    Where a shaft rests its rate is zero for certain, and the mean of the samples is its place.
+    Where a shaft rests, its rate is taken as zero, and its place is the mean of the samples.
     """
     start = min(max(sample - EVEN // 2, 0), max(time.size - EVEN, 0))
     around = slice(start, start + EVEN)

@@ -1,4 +1,4 @@
-"""The slopes of a residual at a fit, as sharp as a covariance needs them."""
+"""The slopes of a residual at a fit, accurate enough for a covariance."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 
 FINE = 1e-5
-"""Difference step of a covariance, in the coordinates of the search. Derived: within the interval of any value known
-to 0.01 %, and wrong by rounding by about 1e-11 of the residual."""
+"""Difference step of a covariance, in the coordinates of the search. Derived: within the interval of any value known to
+0.01 %, with a rounding error of about 1e-11 of the residual."""
 FINEST = 1e-7
 """Difference step where a bend lies within the fine one. Chosen: a hundredth of it; simulations of the stiffer effects
 are too noisy to begin with it. Not varied."""
 SMOOTH = 1e-4
-"""Largest relative difference of the slopes ahead and behind where the residual is smooth. Derived: ten times the step
-`FINE`, which a curvature of order ten makes."""
+"""Largest relative difference between forward and central slopes where the residual is smooth. Derived: ten times the
+step `FINE`, which a curvature of order ten makes."""
 WEAK = 0.05
-"""A coordinate that its own slope tells no better than this may still be told by jumps. Chosen: 5 % of a parameter,
-above what identification calls known; not varied."""
+"""Standard deviation of a coordinate by its own slope, beyond which jumps may still determine it. Chosen: 5 % of a
+parameter, above what identification calls known; not varied."""
 JUMPS = (1e-4, 1e-3, 5e-3)
 """Steps tried, finest first, for a quantity that acts in jumps. Chosen: its interval is then at least as wide as the
-first that sees a jump, 0.01 %; not varied."""
+first step that shows a jump, 0.01 %; not varied."""
 
 Residual = Callable[[Signal], Signal]
 Bounds = tuple[Signal, Signal]
@@ -41,10 +41,10 @@ def central(residual: Residual, point: Signal, bounds: Bounds, step: float) -> S
 
 
 def sharp(residual: Residual, point: Signal, bounds: Bounds) -> Signal:
-    """Derivative of `residual`, each column with the step that sees the least bend around `point`.
+    """Derivative of `residual`, shape (samples, quantities), each column by the step with the least bend.
 
-    A shaft that only just breaks loose bends the residual, and fits like to end on such a bend. Columns
-    taken across it do not add up: an exact tie of parameters would look as if the recording broke it.
+    A shaft that only just breaks loose bends the residual, and fits tend to end on such a bend. Columns across the bend
+    are inconsistent: an exact tie of parameters would look as if the recording broke it.
     """
     value = residual(point)
     slopes, bend = _bend(residual, point, value, bounds, FINE)
@@ -60,9 +60,10 @@ def sharp(residual: Residual, point: Signal, bounds: Bounds) -> Signal:
 def _across_jumps(
     residual: Residual, point: Signal, bounds: Bounds, index: int, column: Signal, noise: float
 ) -> Signal:
-    """The column of a quantity that acts in jumps, as when the shaft breaks loose a sample later.
+    """The column of a quantity that acts in jumps, as when the shaft breaks loose a sample later; shape (samples,).
 
-    Taken with the finest step that sees jumps, its length held down so that the deviation is no less.
+    It is taken with the finest step that shows jumps. Its length is limited so that the standard deviation is no less
+    than this step.
     """
     for step in JUMPS:
         offset = step * np.eye(point.size)[index]
@@ -75,7 +76,7 @@ def _across_jumps(
 
 
 def _bend(residual: Residual, point: Signal, middle: Signal, bounds: Bounds, step: float) -> tuple[Signal, Signal]:
-    """The slopes at `point` and, for each column, how far those ahead and behind are apart."""
+    """The central slopes at `point`, and for each column the relative distance of the forward slopes from them."""
     ahead, behind = (np.clip(point + sign * step * np.eye(point.size), *bounds) for sign in (1.0, -1.0))
     after, before = (np.stack([residual(there) for there in side], axis=1) for side in (ahead, behind))
     width = np.maximum(np.diagonal(ahead - behind), 1e-300)

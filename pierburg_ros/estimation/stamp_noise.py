@@ -1,4 +1,4 @@
-"""What stamps that are off may do to the error of a simulation."""
+"""The error of a simulation that wrong stamps cause."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from pierburg_ros.recording.stamps import ACROSS, rates, stamp_error
 
 
 def stamp_noise(recording: Recording, model: Model) -> float:
-    """Standard deviation that stamps which are off bring into the error of a simulation by `model`, measured unit.
+    """Standard deviation [measured unit] that wrong stamps add to the error of a simulation by `model`.
 
-    A sample is off by how far the shaft moves meanwhile. So is the shaft, after a change of the duty, by how far that
-    makes it move, until `model` forgets it: stamps of the duty are taken to be off as those of samples are.
+    A sample is wrong by the movement of the shaft during the error of its stamp. After a change of the duty, the shaft
+    is wrong by the movement that the change causes in that time, until `model` forgets it. The stamps of the duty are
+    taken to be as wrong as those of the samples.
     """
     time, measured = recording.time, recording.measured
     noise = noise_of(time, measured)

@@ -1,7 +1,7 @@
-"""The balance of torques of a shaft that turns round, read from its motion: what it says of the input and of a turn.
+"""The torque balance of a shaft that turns round, from its motion: the lag of the input and the torque over a turn.
 
-Nothing is simulated: inertia, friction and a torque that repeats itself with every turn have to make up the torque of
-the motor, sample by sample. It is linear in all that is unknown, so it takes milliseconds, and has one minimum.
+Nothing is simulated: at each sample, inertia, friction and a torque that repeats with every turn must make up the
+torque of the motor. The balance is linear in all unknowns, so it takes milliseconds and has one minimum.
 """
 
 from __future__ import annotations
@@ -21,44 +21,46 @@ from pierburg_ros.plant.simulate import motor_torque
 from pierburg_ros.plant.torques.missing import missing
 
 WINDOW = 11
-"""Samples around a moment from which angle, velocity and acceleration are read. Derived: the velocity at 500 Hz is
-then known to 48 noises per second."""
+"""Number of samples around a moment from which angle, velocity and acceleration are computed. Derived: the velocity at
+500 Hz is then known to 48 noises per second."""
 SLOW_PART = 0.1
-"""Share of the steps between samples that are finer than the one by which the highest frequency is told. Chosen: the
-slow tenth of a movement shows what the rest is too fast for."""
+"""Share of the steps between samples that are finer than the step that sets the highest frequency. Chosen: the slow
+tenth of a movement shows frequencies for which the rest is too fast."""
 TURN = 2.0 * math.pi
-"""Angle after which a shaft is where it was [rad]. Derived: one turn in radian."""
+"""Angle after which a shaft is at the same place again [rad]. Derived: one turn in radian."""
 WHOLE = 0.9
-"""Share of a turn that a shaft has to be seen in for a map of it. Chosen: the rest of its orders tell the tenth."""
+"""Smallest share of a turn that must be measured for a map of it. Chosen: the orders determine the missing tenth."""
 FALSE_ALARM = 0.01
-"""Chance at which a torque that wanders without a rhythm is given one. Chosen: one recording in a hundred."""
+"""Probability of a false alarm: a torque that wanders without a period is given one. Chosen: one recording in a
+hundred."""
 NEIGHBOURS = 12
-"""Orders to either side that say what a spectrum is beside one of them. Chosen: few enough for it to be even there; not
-varied."""
+"""Number of orders on either side that give the usual power around an order. Chosen: few enough for the spectrum to be
+even there; not varied."""
 MOST = 128
-"""Highest order that is looked for. Chosen: twice the 64 poles and slots at which the search of a ripple began."""
+"""Highest order that is tested. Chosen: twice the 64 poles and slots at which the search of a ripple began."""
 SAMPLES = 8
-"""Samples of the motion for each unknown, at least. Chosen: those beside each other share most of their window."""
+"""Smallest number of samples of the motion for each unknown. Chosen: neighbouring samples share most of their
+window."""
 ROUNDING = 1e-9
-"""What is added to the diagonal of the normal equations. Derived: far above rounding, far below a column."""
+"""Number that is added to the diagonal of the normal equations. Derived: far above rounding, far below a column."""
 OUTLYING = 12.0
-"""Error, over the median of all, beyond which a sample is left out. Chosen: three times where white noise ends; a
-shaft that is caught in motion or knocked lies beyond, one that slips does not."""
+"""Error, over the median of all errors, beyond which a sample is left out. Chosen: three times where white noise ends.
+A shaft that is caught in motion or knocked lies beyond, one that slips does not."""
 LATE = 0.5
-"""Share of what is left without it up to which a filter of the input must bring it. Chosen: half; on the rotor under a
-controller whose current is recorded behind one it is a quarter to a third (n = 3)."""
+"""Largest squared residual that a filter of the input may leave, as a share of that without a filter. Chosen: half; on
+the rotor under a controller whose current is recorded behind a filter it is a quarter to a third (n = 3)."""
 
 
 Part = tuple[Inputs, Signal, Signal, Flags]
-"""Inputs, and of each sample its time [s], what was measured, and whether it is seen; each shape (samples,)."""
+"""The inputs, and for each sample its time [s], the measured value and whether it is used; each shape (samples,)."""
 
 
 @dataclass(frozen=True)
 class Balance:
-    """What makes up the motor torque: `lag` [s] of its record, and over a turn `cosines` and `sines` [N.m] by `orders`.
+    """The parts of the motor torque: `lag` [s] of its record, and `cosines` and `sines` [N.m] over a turn by `orders`.
 
-    `friction` [N.m] is what resists movement at any speed, `resistance` [N.m] all that resists it, on average over its
-    way; `left` the root mean square [N.m] of what nothing makes up.
+    `friction` [N.m] resists movement at any speed. `resistance` [N.m] is all resistance to movement, on average over
+    the way. `left` [N.m] is the root mean square of the residual torque.
     """
 
     lag: float
@@ -71,26 +73,29 @@ class Balance:
 
     @property
     def strongest(self) -> tuple[float, float, int]:
-        """Cosine and sine [N.m] of the strongest order, and which it is."""
+        """Cosine and sine [N.m] of the strongest order, and that order."""
         place = int(np.argmax(np.hypot(self.cosines, self.sines)))
         return float(self.cosines[place]), float(self.sines[place]), int(self.orders[place])
 
     @property
     def lesser(self) -> Balance:
-        """The same without the strongest order."""
+        """The same balance without the strongest order."""
         rest = np.delete(np.arange(self.orders.size), np.argmax(np.hypot(self.cosines, self.sines)))
         return replace(self, orders=self.orders[rest], cosines=self.cosines[rest], sines=self.sines[rest])
 
     def torque(self, angle: Signal) -> Signal:
-        """Load torque over a turn [N.m] at each `angle` [rad], positive closes, its mean left out."""
+        """Load torque over a turn [N.m] without its mean, at each `angle` [rad]; positive closes."""
         turns = np.outer(angle, self.orders)
         return np.asarray(np.cos(turns) @ self.cosines + np.sin(turns) @ self.sines)
 
 
 @dataclass(frozen=True)
 class _Motion:
-    """Samples at even steps: time [s], angle [rad], velocity, acceleration, motor torque beyond the known load [N.m],
-    and the rate of all of it; whether a `weight` hangs on the shaft."""
+    """Samples at even steps, each shape (samples,): time [s], angle [rad], its derivatives and torques [N.m].
+
+    `torque` is the motor torque beyond the known load, `rate` the derivative of the whole motor torque. `weight`: a
+    weight hangs on the shaft.
+    """
 
     time: Signal
     angle: Signal
@@ -105,7 +110,7 @@ class _Motion:
 
     @staticmethod
     def of_all(motions: Sequence[_Motion]) -> _Motion:
-        """One after the other."""
+        """All `motions`, one after the other."""
         joined: dict[str, Any] = {name: np.concatenate([getattr(each, name) for each in motions]) for name in SIGNALS}
         return replace(motions[0], **joined)
 
@@ -114,7 +119,7 @@ SIGNALS = ("time", "angle", "velocity", "acceleration", "torque", "rate")
 
 
 def goes_round(model: Model, measured: Signal, quantity: str) -> bool:
-    """Whether a shaft without stops, driven by a current or torque, is seen in most of a turn."""
+    """Whether a shaft without stops, driven by a current or torque, is measured over most of a turn."""
     actuator = model.actuator
     free = math.isinf(actuator.upper_stop - actuator.lower_stop) and actuator.motion == "rotary"
     if not free or actuator.drive == "voltage" or quantity != "position" or measured.size <= 2 * WINDOW:
@@ -123,9 +128,9 @@ def goes_round(model: Model, measured: Signal, quantity: str) -> bool:
 
 
 def recorded_lag(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> float:
-    """Time constant [s] of the filter behind which the input was recorded; 0 unless that leaves half as much (`LATE`).
+    """Time constant [s] of the filter behind which the input was recorded; 0 unless it explains enough (`LATE`).
 
-    A current sensor that is smoothed shows the torque that holds the shaft at an angle a moment later.
+    A smoothed current sensor shows the torque that holds the shaft at an angle a moment later.
     """
     motion = _motion(model, inputs, time, measured)
     late, inside = _balanced(motion, True)
@@ -134,7 +139,7 @@ def recorded_lag(model: Model, inputs: Inputs, time: Signal, measured: Signal) -
 
 
 def ahead(inputs: Inputs, lag: float) -> Inputs:
-    """The inputs that a first-order filter with a time constant of `lag` [s] would record as these."""
+    """The inputs that a first-order filter with a time constant of `lag` [s] would record as `inputs`."""
     if lag == 0.0 or inputs.command.size < WINDOW:
         return inputs
     step = float(np.median(np.diff(inputs.time)))
@@ -142,14 +147,15 @@ def ahead(inputs: Inputs, lag: float) -> Inputs:
 
 
 def over_a_turn(model: Model, parts: Sequence[Part]) -> Balance:
-    """What makes up the motor torque in all `parts` of recordings together."""
+    """The balance of the motor torque in all `parts` of recordings together."""
     return _balanced(_Motion.of_all(_motions(model, parts)), False)[0]
 
 
 def left_unseen(model: Model, told: Sequence[Part], unseen: Sequence[Part]) -> tuple[float, float]:
-    """What is left of the motor torque [N.m, root mean square] on `unseen` samples, fitted to those that are `told`.
+    """Residual motor torque [N.m, root mean square] on `unseen` samples, fitted to the samples of `told`.
 
-    Without a torque over a turn, and with the orders that the latter tell; not a number where nothing is unseen.
+    The first value is without a torque over a turn, the second with the orders found in `told`. Both are not a number
+    where there are no unseen samples.
     """
     seen, others = (_Motion.of_all(_motions(model, parts)) for parts in (told, unseen))
     orders = _balanced(seen, False)[0].orders.tolist()
@@ -163,21 +169,21 @@ def left_unseen(model: Model, told: Sequence[Part], unseen: Sequence[Part]) -> t
 
 
 def finest(place: Signal) -> float:
-    """The highest frequency [1 / unit of place] that samples at `place` tell, two to a period; 0 where it rests."""
+    """The highest frequency [1 / unit of place] that samples at `place` resolve, two to a period; 0 where it rests."""
     steps = np.abs(np.diff(place))
     steps = steps[steps > 0.0]
     return 0.5 / float(np.quantile(steps, SLOW_PART)) if steps.size else 0.0
 
 
 def _derivative(values: Signal, order: int, step: float) -> Signal:
-    """The derivative of some order, by cubics through `WINDOW` samples a `step` apart; order 0 smooths."""
+    """The derivative of some order, by cubics through `WINDOW` samples that are a `step` [s] apart; order 0 smooths."""
     from scipy.signal import savgol_filter  # takes long to load, and most actuators need none
 
     return np.asarray(savgol_filter(values, WINDOW, 3, deriv=order, delta=step))
 
 
 def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Motion:
-    """The motion at even steps, its derivatives from cubics through `WINDOW` samples, four steps to each."""
+    """The motion at every `WINDOW // 4` even steps; derivatives are those of cubics through `WINDOW` samples."""
     step = float(np.median(np.diff(time)))
     even = np.arange(time[0], time[-1], step)
     shown = np.interp(even, time, decoded(model, measured, "position"))
@@ -200,7 +206,7 @@ def _motion(model: Model, inputs: Inputs, time: Signal, measured: Signal) -> _Mo
 
 
 def _motions(model: Model, parts: Sequence[Part]) -> list[_Motion]:
-    """The motion of each part where it is seen."""
+    """The motion of each part at the samples that are used."""
     motions = []
     for inputs, time, measured, seen in parts:
         motion = _motion(model, inputs, time, measured)
@@ -209,10 +215,10 @@ def _motions(model: Model, parts: Sequence[Part]) -> list[_Motion]:
 
 
 def _columns(motion: _Motion, orders: Sequence[int]) -> Signal:
-    """What may make up the torque, shape (samples, columns): friction, inertia, a weight, and some orders of a turn."""
+    """Columns of the fit, shape (samples, columns): friction, inertia, a weight, and some orders of a turn."""
     columns = [np.ones(motion.time.size), np.sign(motion.velocity), motion.velocity, motion.acceleration]
     if motion.weight:
-        # its own or its axis may be other than described: once in a turn
+        # weight and axis may differ from the description: once in a turn
         columns += [np.cos(motion.angle), np.sin(motion.angle)]
     for order in orders:
         columns += [np.cos(order * motion.angle), np.sin(order * motion.angle)]
@@ -220,9 +226,10 @@ def _columns(motion: _Motion, orders: Sequence[int]) -> Signal:
 
 
 def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tuple[Balance, Flags]:
-    """Least squares, order by order: the one that stands out most, while chance would hardly raise any so far.
+    """The balance by least squares, and the samples that it uses, shape (samples,).
 
-    Also which samples are `inside`, and not left out. Those are the given ones, or those that lie close enough.
+    Order by order, it adds the one that stands out most, until chance may raise one as far. The samples are those
+    `inside` if given, otherwise all but outliers.
     """
     known = _columns(motion, ())
     if lagged:
@@ -253,7 +260,7 @@ def _balanced(motion: _Motion, lagged: bool, inside: Flags | None = None) -> tup
 
 
 def _least_squares(known: Signal, wanted: Signal) -> Signal:
-    """Solution of the normal equations of columns scaled to one; what is not told apart stays small."""
+    """Solution of the normal equations of columns scaled to one; coefficients that are not distinguished stay small."""
     scale = np.linalg.norm(known, axis=0) + 1e-300
     scaled = known / scale
     gram = scaled.T @ scaled + ROUNDING * np.eye(scale.size)
@@ -261,7 +268,7 @@ def _least_squares(known: Signal, wanted: Signal) -> Signal:
 
 
 def _next_order(cosine: Signal, sine: Signal, highest: int, taken: list[int]) -> int:
-    """The order, none that is `taken`, that stands out most from those beside it; 0 where chance raises one so far."""
+    """The order that stands out most from its neighbours and is not `taken`; 0 where chance may raise one as far."""
     from scipy.ndimage import median_filter  # takes long to load, and most actuators need none
 
     power = np.square(cosine) + np.square(sine)
@@ -274,9 +281,9 @@ def _next_order(cosine: Signal, sine: Signal, highest: int, taken: list[int]) ->
 
 
 def _least_height(orders: int) -> float:
-    """How far above its neighbours chance raises one of so many `orders` once in 1 / `FALSE_ALARM`.
+    """Ratio to its neighbours that one of so many `orders` exceeds by chance once in 1 / `FALSE_ALARM`.
 
-    The power of an order without a rhythm is distributed exponentially, and its ratio to the mean of n others exceeds z
-    with the chance (1 + z / n)^-n. A median of twice as many tells that mean about as well.
+    The power of an order without a period is distributed exponentially. Its ratio to the mean of n others exceeds z
+    with the probability (1 + z / n)^-n. A median of twice as many orders gives that mean about as well.
     """
     return NEIGHBOURS * (math.pow(orders / FALSE_ALARM, 1.0 / NEIGHBOURS) - 1.0)

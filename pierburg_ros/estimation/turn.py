@@ -1,4 +1,4 @@
-"""The torque that repeats itself with every turn of a shaft that goes round: a map over one turn."""
+"""The torque that repeats with every turn of a shaft: a map over one turn."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
 MENTIONED = 4
-"""How many orders are told in words. Chosen: a sentence holds no more; the map holds all."""
+"""Number of orders that are named in words. Chosen: a sentence holds no more; the map holds all."""
 LEAST = 0.01
-"""Share of the strongest order from which another is told. Chosen: less is not seen beside it."""
+"""Smallest amplitude of an order that is named, as a share of the strongest. Chosen: a smaller one is not visible
+beside it."""
 
 
 def left_of_torque(told: Data, unseen: Data, nominal: Model) -> tuple[float, float] | None:
-    """What is left of the torque [N.m, root mean square] on the training samples of `unseen`, fitted to those `told`.
+    """Residual torque [N.m, root mean square] on the training samples of `unseen`, fitted to those of `told`.
 
-    By `nominal` as it is, and with the torque over a turn that it lacks. None where no overtones are told: then a
-    search does as well.
+    The first value is by `nominal` as it is, the second with the torque over a turn that it lacks. None where there are
+    no overtones: then a search does as well.
     """
     found = repeated(told, nominal)
     if found is None or found.orders.size < 2:
@@ -34,16 +35,16 @@ def left_of_torque(told: Data, unseen: Data, nominal: Model) -> tuple[float, flo
 
 
 def with_lesser_orders(data: Data, nominal: Model) -> Model:
-    """`nominal` with all orders of the torque over a turn but the strongest, for which an effect may then be named.
+    """`nominal` with all orders of the torque over a turn but the strongest, which can then be named as an effect.
 
-    A ripple has overtones. A sine alone leaves so much of them that little is seen beside it.
+    A ripple has overtones. A sine alone leaves so much of them that little else is detected.
     """
     found = repeated(data, nominal)
     return nominal if found is None else _with(nominal, found.lesser)
 
 
 def with_turn(data: Data, base: Model) -> Model | None:
-    """`base` with what it lacks of the torque over a turn; None where no shaft goes round."""
+    """`base` with the torque over a turn that it lacks; None where no torque repeats with the turn."""
     found = repeated(data, base)
     return None if found is None else _with(base, found)
 
@@ -58,11 +59,11 @@ def described_turn(torque: Signal, unit: str) -> str:
 
 
 def repeated(data: Data, model: Model) -> Balance | None:
-    """What the training samples say of the torque over a turn that a `model` lacks; None where nothing repeats itself.
+    """The torque over a turn that a `model` lacks, from the training samples; None where none repeats with the turn.
 
-    All runs that go round tell it together: the angle is counted from the same place in all recordings of an actuator.
-    The longest run of each recording has to show an order by itself: what pieces of a swing leave, put together, passes
-    for one.
+    All runs that turn round are used together, since the angle is counted from the same place in all recordings of an
+    actuator. The longest run of each recording must show an order by itself: the residuals of pieces of a swing, put
+    together, can be mistaken for one.
     """
     own = _repeating(model)
     told = [run for run in data.runs if run.train.any()]
@@ -82,13 +83,13 @@ def _part(run: Run) -> Part:
 
 
 def _repeating(model: Model) -> Model:
-    """`model` with a residual torque only if that repeats itself with every turn: another may stand for the same."""
+    """`model` with its residual torque only if that repeats with every turn: any other may explain the same torque."""
     residual = model.residual_torque
     return model if residual is not None and "period" in residual else model.with_residual(None)
 
 
 def _with(model: Model, found: Balance) -> Model:
-    """`model` with a torque over a turn beside its own; the first node is the last one again."""
+    """`model` with a torque over a turn added to its own; the last node is the first one again."""
     angle = np.linspace(0.0, TURN, RESIDUAL_ANGLES)
     torque, own = found.torque(angle), _repeating(model).residual_torque
     if own is not None:

@@ -1,4 +1,4 @@
-"""Fits of whole recordings: the parameters of an actuator, from several starts, as exact as the noise allows."""
+"""Fits of an actuator's parameters to whole recordings, from several starts, as exact as the noise allows."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from pierburg_ros.recording.recording import Recording
 from pierburg_ros.workers import workers
 
 ITERATIONS = 30
-"""Iterations after which a descent ends that still gains. Work: it bounds a fit that goes on for the sake of a
+"""Number of iterations after which a descent that still gains ends. Work: it bounds a fit that continues only for a
 tolerance of 1e-7; not varied."""
 NOTICEABLE = 1e-3
-"""Share of the cost below which a gain no longer counts: wide differences have done their part, or the cost is rough
-where one more linear step promises more. Derived: in 30,000 samples chance alone changes the cost by 0.8 %, one
-parameter by 3e-5."""
+"""Share of the cost below which a gain no longer counts. A descent with wide differences then ends; a cost is rough
+where one more linear step predicts a larger gain. Derived: in 30,000 samples chance alone changes the cost by 0.8 %,
+one parameter by 3e-5."""
 SPREAD = 0.4
-"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter. Chosen: about what a parameter
-of another specimen may differ by; not varied."""
+"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter. Chosen: about what a parameter of
+another specimen may differ by; not varied."""
 
 
 @dataclass(frozen=True)
 class Identified:
-    """A fitted model with what is known of its free parameters.
+    """A fitted model with the uncertainty of its free parameters.
 
-    `covariance` and `slopes`, shape (samples, names), are those of the coordinates of the search: relative changes for
+    `covariance` and `slopes`, shape (samples, names), are for the coordinates of the search: relative changes for
     positive base parameters. `slopes` are in units of the noise.
     """
 
@@ -64,12 +64,12 @@ class Identified:
 
     @property
     def noise(self) -> float:
-        """Standard deviation of the residual, in the measured unit, counted with the freedom of the fit."""
+        """Standard deviation of the residual, in the measured unit, with the degrees of freedom of the fit."""
         return self.covariance.noise * self.estimator.data.noise
 
     @cached_property
     def residuals(self) -> tuple[Signal, ...]:
-        """Measured less simulated, one array a recording, in the measured unit."""
+        """Measured minus simulated, one array for each run, in the measured unit."""
         lengths = [run.time.size for run in self.estimator.data.runs]
         return tuple(np.split(self.fit.solution.residual * self.estimator.data.noise, np.cumsum(lengths)[:-1]))
 
@@ -117,9 +117,9 @@ def fit(
 ) -> Identified:
     """Fit the parameters `free` (dotted names) of `model` to `recordings`; the others stay as they are.
 
-    The first start is `model` itself; while the RMSE stays above the noise, up to `starts` are tried, the
-    further ones chosen among random points. Where the cost is too rough for its slope and `refine` is true,
-    other local minima are searched from there. `jobs` simulations run at a time, by default one for each core.
+    The first start is `model` itself. While the RMSE stays above the noise, up to `starts` are tried; the further ones
+    are chosen among random points. Where the cost is too rough for its slope and `refine` is true, the fit searches for
+    other local minima from there. `jobs` simulations run at a time, by default one for each core.
     """
     if not free:
         raise InputError("There is no free parameter to fit; expected one or more. Free one.")
@@ -155,7 +155,7 @@ def _descend(estimator: Estimator, start: Fit, tolerance: float, refine: bool) -
 
 
 def _is_rough(fit: Fit, lower: Signal, upper: Signal) -> bool:
-    """Whether the slope at a fit promises a reduction that the descent did not find."""
+    """Whether the slope at a fit predicts a reduction that the descent did not find."""
     point, residual, slopes = fit.solution.point, fit.solution.residual, fit.solution.jacobian
     inside = (point > lower + 1e-6) & (point < upper - 1e-6)
     if not inside.any():
@@ -165,7 +165,7 @@ def _is_rough(fit: Fit, lower: Signal, upper: Signal) -> bool:
 
 
 def _further_starts(estimator: Estimator, explanation: Explanation, count: int, seed: int) -> list[Fit]:
-    """The `count` best of random starts, best first; none are drawn where none are wanted."""
+    """The `count` best of random starts, best first; empty where `count` is not positive."""
     if count <= 0:
         return []
     coordinates = estimator.coordinates(explanation)

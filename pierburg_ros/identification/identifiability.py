@@ -1,4 +1,4 @@
-"""Which parameters a recording can tell, and in words why it cannot tell the others."""
+"""Which parameters a recording determines, and in words why it does not determine the others."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below this share of it. Given: a convention of the
 report, a tenth."""
 NOTHING = 1e-11
-"""Share of a parameter's trace that is none. Derived: a hundred thousand roundings of 1.1e-16."""
+"""Share of a parameter's trace that counts as none. Derived: a hundred thousand roundings of 1.1e-16."""
 MOST_PARTNERS = 4
-"""Largest number of parameters looked for as those that together imitate another. Work: all combinations are tried;
+"""Largest number of parameters that are tested together as an imitation of another. Work: all combinations are tried;
 the valve's motion has four numbers, so four imitate any."""
 
 ONLY_RATIOS = "not identifiable: held, since a recorded input and a motion tell all torques only in ratio to it."
-"""What is said of a factor of the input."""
+"""The reason given for a factor of the input."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What a recording says of one parameter while those that are free adapt to any change of it.
+    """The result for one parameter while those that are free adapt to any change of it.
 
-    `half_width` is its 95 % half-width, relative to its value; None where it is infinite.
-    `imitation`: the percent change of others that equals +1 %.
+    `half_width` is its 95 % half-width, relative to its value; None where it is infinite. `imitation`: the percent
+    change of others that equals +1 % of it.
     """
 
     identifiable: bool
@@ -72,7 +72,7 @@ def endless(fitted: Identified, model: Model, name: str, unit: str) -> Finding:
 
 
 def _relative_slopes(fitted: Identified, recordings: Sequence[Recording], names: tuple[str, ...]) -> Signal:
-    """Change of the residual [measured unit] by the relative change of each parameter, shape (samples, names)."""
+    """Change of the residual [measured unit] per relative change of each parameter, shape (samples, names)."""
     estimator = Estimator(data_of(recordings, fitted.model), fitted.model)
     explanation = Explanation(names)
     coordinates = estimator.coordinates(explanation)
@@ -107,7 +107,7 @@ class _Trace:
         return Finding(False, width, imitation, self._tie(name, own, imitation))
 
     def _left_over(self, own: Signal, partners: Sequence[str]) -> tuple[float, Signal]:
-        """Length of what `partners` cannot imitate of `own`, and the changes with which they do the rest."""
+        """Length of the part of `own` that `partners` cannot imitate, and their changes that imitate the rest."""
         if not partners:
             return float(np.linalg.norm(own)), np.empty(0)
         columns = self.jacobian[:, [self.names.index(partner) for partner in partners]]
@@ -116,7 +116,7 @@ class _Trace:
         return float(np.linalg.norm(own - columns @ changes)), changes
 
     def _imitation(self, own: Signal, others: Sequence[str]) -> tuple[tuple[str, ...], Signal]:
-        """The fewest parameters that imitate `own` below the noise, and their changes."""
+        """The fewest parameters that imitate `own` to below the noise, and their changes."""
         for size in range(1, min(MOST_PARTNERS, len(others)) + 1):
             tried = [(*self._left_over(own, group), group) for group in combinations(others, size)]
             left, changes, group = min(tried, key=lambda row: row[0])

@@ -1,4 +1,4 @@
-"""What `pierburg identify` finds in recordings: the paper's way beside the fit of whole recordings."""
+"""The result of `pierburg identify`: the paper's procedure beside the fit of whole recordings."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
 HELD = ("supply_voltage", "spring_stiffness", "gravity_torque", "sensor_scale", "sensor_offset")
-"""Held unless freed: the supply can be measured, input and angle leave the scale of all torques open, and a sensor that
-is off would be mended by the load."""
+"""Parameters that are held unless freed. The supply can be measured. Input and angle leave the scale of all torques
+open. The load would compensate for an error of the sensor."""
 TRAINED_SHARE = 0.7
-"""Share of a single recording that the validated fit sees. Given: the usual split, 70 to 30."""
+"""Share of a single recording to which the validated fit is made. Given: the usual split, 70 to 30."""
 
 
 @dataclass(frozen=True)
 class Identification:
-    """The fit of all recordings, what it says of every parameter, and the paper's own procedure beside it.
+    """The fit of all recordings, its result for every parameter, and the paper's own procedure beside it.
 
-    `validation_rmse` is that of a second fit on data that it did not see, in the measured unit.
+    `validation_rmse` is that of a second fit on data that it did not use, in the measured unit.
     """
 
     model: Model
@@ -52,7 +52,7 @@ class Identification:
 
     @property
     def repeated(self) -> str | None:
-        """What is part of the fitted model because it repeats itself with every turn, in words; None if nothing is."""
+        """The torque in the fitted model that repeats with every turn, in words; None if there is none."""
         residual = self.fitted.model.residual_torque
         if residual is None or self.model.residual_torque is not None:
             return None
@@ -85,12 +85,12 @@ class Identification:
         }
 
     def _fixed_by(self, name: str, fixed: bool) -> dict[str, str]:
-        """What the description says of a fixed parameter, if anything."""
+        """The `fixed_by` of a fixed parameter in the description, if any."""
         declared = self.model.actuator.parameters.get(name)
         return {"fixed_by": declared.fixed_by} if fixed and declared is not None and declared.fixed_by else {}
 
     def _static(self) -> dict[str, Any] | None:
-        """D_c and D_pre of the settled angles, or where those are too few, of the fit."""
+        """D_c and D_pre of the settled angles, or of the fit where those are too few."""
         if self.static is not None:
             pair = {"D_c": self.static.coulomb_duty, "D_pre": self.static.preload_duty}
             return {name: {"value": x.value, "ci95": list(x.ci95)} for name, x in pair.items()}
@@ -134,7 +134,7 @@ def identify(
 
 
 def papers(actuator: Actuator) -> bool:
-    """Whether the paper's own procedure applies: a spring against a duty, and an angle that is seen."""
+    """Whether the paper's own procedure applies: a spring against a duty, and a measured angle."""
     return actuator.load == "spring" and actuator.drive == "voltage" and actuator.quantity != "speed"
 
 
@@ -143,7 +143,7 @@ def _steps(recordings: Sequence[Recording], model: Model, static: StaticCharacte
 
 
 def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()) -> tuple[str, ...]:
-    """The parameters to fit: the actuator's free ones but HELD, those of effects that act, and `free`."""
+    """The parameters to fit: the actuator's free ones except HELD, those of effects that act, and `free`."""
     for name in (*free, *fixed):
         model.range(name)
     base = [name for name in model.actuator.free if name not in HELD]
@@ -174,7 +174,7 @@ def refuse_unmoved(recording: Recording, actuator: Actuator) -> None:
 def validation_rmse(
     start: Model, recordings: Sequence[Recording], names: Sequence[str], jobs: int | None = None
 ) -> float:
-    """RMSE on unseen data: of the last recording, or of the end of the only one, fitted to the rest."""
+    """RMSE on unseen data: on the last recording, or the end of the only one, after a fit to the rest."""
     if len(recordings) > 1:
         seen, unseen, first = recordings[:-1], recordings[-1], 0
     else:

@@ -48,7 +48,7 @@ def identification_page(
 
 
 def parameter_rows(found: Identification, content: dict[str, Any]) -> list[dict[str, Any]]:
-    """Every parameter for people: what a fit has found, what was held, what cannot be told and why."""
+    """Every parameter for people: fitted, held, or not identifiable and why."""
     rows = []
     for name, entry in content["parameters"].items():
         reason = "" if entry["identifiable"] else found.findings[name].reason
@@ -69,7 +69,7 @@ def state_plots(found: Identification) -> list[Plot]:
 
 
 def commands(sources: Sequence[Path]) -> list[dict[str, str]]:
-    """What to run next with the identified model."""
+    """Commands to run next with the identified model."""
     if not sources:
         return []
     first = str(sources[0])

@@ -70,7 +70,7 @@ def static_picture(static: StaticCharacteristic, upper_stop: float) -> Figure:
 
 
 def offsets(recordings: Sequence[Recording]) -> list[float]:
-    """Where each recording begins in a plot that shows them one after another [s]."""
+    """Start of each recording in a plot that shows them one after another [s]."""
     ends = np.cumsum([recording.duration for recording in recordings])
     return [0.0, *(float(end) for end in ends[:-1])]
 

@@ -1,4 +1,4 @@
-"""A fit that begins near or far, whose range goes along with it, and the parameters that it drives from every range."""
+"""A fit from a near or a far start, whose range moves with it, and the parameters that leave every range."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
 FOLLOWED = 2
-"""How often the range of a search, a factor of 6 either way, is moved to where the fit left it. Chosen: a description
-that is off by a factor of 200 is better written anew."""
+"""Number of times that the range of a search, a factor of 6 either way, is moved to where the fit left it. Chosen: a
+description that is off by a factor of 200 is better written anew."""
 
 
 def fitted(
     model: Model, recordings: Sequence[Recording], free: Sequence[str], starts: int = 3, jobs: int | None = None
 ) -> tuple[Identified, tuple[str, ...]]:
-    """`model` fitted to `recordings`, and which of the `free` parameters run away from every range.
+    """`model` fitted to `recordings`, and the `free` parameters that run away from every range.
 
-    One that the fit does as well without, to a tenth of its error, is held as described. Where a shaft goes round, what
-    repeats itself with every turn is part of the model if the error falls by a tenth: else the inertia, which smooths
-    the motion, stands for it.
+    A parameter without which the fit is as good, to a tenth of its error, is held as described. Where a shaft turns
+    round, a torque that repeats with every turn becomes part of the model if the error falls by a tenth. Otherwise the
+    fit would use the inertia, which smooths the motion, in place of that torque.
     """
     base, found = begun(model, recordings, free, starts, jobs)
     if repeating := what_repeats(found.model, recordings):
@@ -45,9 +45,10 @@ def fitted(
 def begun(
     model: Model, recordings: Sequence[Recording], free: Sequence[str], starts: int, jobs: int | None
 ) -> tuple[Model, Identified]:
-    """The better of the fits from `model` and, where that leaves more than noise, from the balance of torques.
+    """The start model and the fit from it: `model`, or that of the torque balance if its fit is better.
 
-    Also where it began, from where it goes on with further `starts` while more than noise is left.
+    The balance is tried where the fit from `model` leaves more than noise. Further `starts` follow from the better one
+    while more than noise is left.
     """
     base, found = model, fit(model, recordings, free, starts=1, jobs=jobs)
     motions = [Motion(inputs_of(each), each.time, each.measured, each.quantity) for each in recordings]
@@ -63,7 +64,7 @@ def begun(
 def _held(
     found: Identified, base: Model, described: Model, recordings: Sequence[Recording], jobs: int | None
 ) -> tuple[Identified, tuple[str, ...]]:
-    """Those that run away held as `described` one after the other, while the error stays, and which these are."""
+    """The fit with runaway parameters held as `described` one by one, as long as the error stays, and their names."""
     best, held = found, tuple[str, ...]()
     while (endless := runaway(best)) and len(best.names) > 1:
         tried = [
@@ -84,15 +85,15 @@ def _held(
 
 
 def what_repeats(fitted: Model, recordings: Sequence[Recording]) -> Model | None:
-    """A fitted model with the torque over a turn that it lacks; None where none is seen, or it has one of its own.
+    """A fitted model with the torque over a turn that it lacks; None where none is detected, or it has one of its own.
 
-    A torque told in the wrong scale repeats itself with the angle too, so the scale is fitted first.
+    A torque in the wrong scale repeats with the angle too, so the scale is fitted first.
     """
     return None if fitted.residual_torque is not None else with_turn(data_of(recordings, fitted), fitted)
 
 
 def runaway(found: Identified) -> tuple[str, ...]:
-    """The free parameters that end where their search ends."""
+    """The free parameters that end at a bound of their search."""
     coordinates, point = found.estimator.coordinates(found.fit.explanation), found.fit.solution.point
     ends = zip(found.names, point, *coordinates.bounds, strict=True)
     return tuple(name for name, x, low, high in ends if min(x - low, high - x) <= 1e-6 * (high - low))

@@ -22,12 +22,12 @@ def parameter_table(found: Identification) -> Listing:
 
 
 def interval(ends: Sequence[float] | None) -> str:
-    """Both ends of an interval, or that the recordings do not tell the number."""
+    """Both ends of an interval, or that the recordings do not determine the number."""
     return "not identifiable" if ends is None else "{:.6g} to {:.6g}".format(*ends)
 
 
 def reasons(found: Identification) -> list[str]:
-    """A sentence for each parameter that these recordings cannot tell, and for what repeats itself with every turn."""
+    """A sentence for each parameter that these recordings do not determine, and one on a torque over a turn."""
     said = [f"{name}: {finding.reason}" for name, finding in found.findings.items() if not finding.identifiable]
     return [found.repeated, *said] if found.repeated else said
 
@@ -63,7 +63,7 @@ def paper_table(found: Identification) -> Listing | None:
 
 
 def audit_lines(checks: Sequence[Check]) -> list[str]:
-    """The audit of Table I, a paragraph a row."""
+    """The audit of Table I, one paragraph for each row."""
     lines = ["Table I of the paper, checked against itself:"]
     for check in checks:
         lines.append(f"  {check.row}: printed {check.printed}; {check.follows}\n    -> {check.verdict}")

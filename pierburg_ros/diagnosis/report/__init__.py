@@ -1,1 +1,1 @@
-"""A diagnosis for people and programs: the terms of diagnosis.json, words, page, figures, terminal."""
+"""Presentation of a diagnosis for people and programs: diagnosis.json, words, page, figures, terminal."""

@@ -1,4 +1,4 @@
-"""How much of an effect that is not named the recordings still allow, beside how large it is typically."""
+"""The largest size that the recordings allow an effect that is not named, beside its typical size."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Bar:
 
 
 def bars(ruled_out: Sequence[RuledOut], model: Model) -> list[Bar]:
-    """What is left of each effect that is ruled out, the most excluded first; `model` is the final one."""
+    """The limits of all effects that are ruled out, the most excluded first; `model` is the final model."""
     found, several = [], Counter(item.id for item in ruled_out)
     for item in ruled_out:
         effect = EFFECT[item.id]

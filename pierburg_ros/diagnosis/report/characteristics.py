@@ -1,7 +1,7 @@
-"""The laws inside a model as curves: friction, load, sensor and play, with what the recordings say around them.
+"""The laws inside a model as curves: friction, load, sensor and play, with points from the recordings around them.
 
-The points are partial residuals: the final law plus what the recording lacks where it was taken, so that they lie on
-the final curve where it is right (Larsen, McCleary, The use of partial residual plots in regression analysis (1972)).
+The points are partial residuals: the final law plus what the recording lacks there. They lie on the final curve where
+it is right (Larsen, McCleary, The use of partial residual plots in regression analysis (1972)).
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from pierburg_ros.plant.decode import angle_per_unit, decoded
 from pierburg_ros.plant.torques import friction, load
 
 NODES = 121
-"""Points of a curve. Work: one is drawn every five pixels."""
+"""Number of points of a curve. Work: one is drawn every five pixels."""
 POINTS = 1200
-"""Points of the recordings beside a curve. Work: more lie on top of each other."""
+"""Number of points of the recordings beside a curve, roughly. Work: more lie on top of each other."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristi
 
 
 def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
-    """Friction over velocity at the middle of the angles at which the shaft moved."""
+    """Friction over velocity at the median of the angles at which the shaft moved."""
     motion = models["final"].actuator.motion
     fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
     middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
@@ -84,8 +84,8 @@ def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
 def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
     """Friction [N.m], positive when it hinders opening, at steady `velocity` [rad/s], shape (velocities,).
 
-    The motor torque is the one that keeps that velocity. Where the velocity is 0 it is what breaks the shaft loose;
-    the side is that of the nearest other velocity.
+    The motor torque is the one that keeps that velocity. At velocity 0 the friction is the torque that breaks the shaft
+    loose, on the side of the nearest other velocity.
     """
     record = model.record()[0]
     result = np.full(velocity.size, math.nan)
@@ -96,7 +96,7 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
         side = math.copysign(1.0, speed) if speed != 0.0 else (1.0 if index > middle else -1.0)
         weight, drag = load.load_at(record, angle, 0.0, 0.0), friction.damping(record, side) * speed
         level = 0.0
-        for _ in range(8):  # the level may depend on the motor torque, which it is a part of
+        for _ in range(8):  # the level may depend on the motor torque, which includes it
             level = friction.level(record, side, speed, angle, weight + drag + side * level)[0]
         result[index] = side * level + drag
     return result
@@ -114,13 +114,13 @@ def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Chara
 
 
 def load_torque(model: Model, angle: Signal) -> Signal:
-    """Torque that loads the standing shaft at the start [N.m], positive closes, shape (angles,)."""
+    """Torque that loads the shaft at rest at the start [N.m], positive closes, shape (angles,)."""
     record = model.record()[0]
     return np.array([load.load_at(record, float(each), 0.0, 0.0) for each in angle])
 
 
 def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Characteristic:
-    """What the sensor shows too much by the nominal scale, over the true angle."""
+    """Place that the nominal scale shows minus the true place, over the true place."""
     nominal, final = models["nominal"], models["final"]
     motion = final.actuator.motion
     drawn = travel_factor(motion)
@@ -144,13 +144,13 @@ def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Cha
 
 
 def _values_at(model: Model, angle: Signal) -> Signal:
-    """What the straight sensor of `model` gives at an `angle` [rad], measured unit."""
+    """Reading of the linear sensor of `model` at an `angle` [rad], measured unit."""
     origin = float(decoded(model, np.zeros(1))[0])
     return np.asarray((angle - origin) / angle_per_unit(model))
 
 
 def _plays(model: Model) -> list[Characteristic]:
-    """For every play that acts: where the driven side is while the driving one goes to and fro."""
+    """For every play that acts: the place of the driven side while the driving side goes to and fro."""
     found, motion = [], model.actuator.motion
     for effect in EFFECTS:
         if effect.play is None or not effect.acts(model.values):
@@ -173,7 +173,7 @@ def _plays(model: Model) -> list[Characteristic]:
 
 
 def _travel(model: Model, angle: Signal) -> tuple[float, float]:
-    """From stop to stop, or as far as the shaft went where there is none [rad]."""
+    """The travel from stop to stop [rad]; where there is no stop, as far as the shaft went."""
     actuator = model.actuator
     low, high = float(np.min(angle)), float(np.max(angle))
     return (
@@ -183,7 +183,7 @@ def _travel(model: Model, angle: Signal) -> tuple[float, float]:
 
 
 def _some(x: Signal, y: Signal) -> tuple[Signal, Signal]:
-    """At most `POINTS` of the points, evenly taken, without the hundredth that lies farthest out to either side."""
+    """About `POINTS` points, fewer than twice as many, evenly taken, without the outermost hundredth on either side."""
     if x.size == 0:
         return x, y
     low, high = np.quantile(y, [0.01, 0.99])

@@ -1,4 +1,4 @@
-"""What the page shows beside the document: each recording with what every explanation leaves of it."""
+"""What the page shows beside the document: each recording with the error of every explanation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def exhibits(found: Found, conclusion: Conclusion) -> Exhibits:
 
 
 def switched_off(data: Data, conclusion: Conclusion) -> list[tuple[Tried, Model]]:
-    """The final model without one of its effects, all else left as it is, for each of them."""
+    """For each effect of the final model: the model with this effect switched off, and all else unchanged."""
     rows = []
     for effect in conclusion.final.explanation.effects:
         model = without_effects(conclusion.model, [effect])

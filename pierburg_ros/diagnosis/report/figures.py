@@ -1,4 +1,4 @@
-"""The plots of the report: signals and errors over time and over the state, laws, what is left as torque."""
+"""The plots of the report: signals and errors over time and over the state, laws, residual torque."""
 
 from __future__ import annotations
 
@@ -28,11 +28,12 @@ MODELS = ("nominal", "recalibrated", "final")
 LAGS = 0.02
 """Longest lag of an autocorrelation, as a share of the first recording. Chosen: a second of a minute."""
 SCATTERED = 1500
-"""Points of an error over angle or velocity. Work: more lie on top of each other."""
+"""Number of points of an error over angle or velocity, roughly. Work: more lie on top of each other."""
 NUMBERED = 6
-"""Windows that are numbered in a plot. Chosen: more would overlap."""
+"""Number of windows that are numbered in a plot. Chosen: more would overlap."""
 CLOSE = 0.05
-"""Windows closer than this share of the recording get one number between them. Derived: two digits on a phone."""
+"""Windows closer than this share of the recording get one number between them. Derived: the width of two digits on a
+phone."""
 
 
 def time_figure(
@@ -40,7 +41,7 @@ def time_figure(
 ) -> go.Figure:
     """A recording over time: signals, error re-estimated, error of the diagnosed model, input.
 
-    `tried` are switched on and off with their names; the keys of the signals begin with `prefix`.
+    The names of the `tried` switch them on and off; the keys of the signals begin with `prefix`.
     """
     measured = f"{prefix}/measured", view.measured
 
@@ -106,7 +107,7 @@ def driving_title(diagnosis: Diagnosis) -> str:
 
 
 def autocorrelation_figure(views: Sequence[View]) -> go.Figure:
-    """Autocorrelation of both errors over the lag, over all recordings, with what white noise stays within."""
+    """Autocorrelation of both errors over the lag, over all recordings, with the band of white noise."""
     plot = go.Figure()
     for key in ("recalibrated", "final"):
         lag, correlation, samples = autocorrelation(views, key)
@@ -118,7 +119,7 @@ def autocorrelation_figure(views: Sequence[View]) -> go.Figure:
 
 
 def autocorrelation(views: Sequence[View], key: str) -> tuple[Signal, Signal, int]:
-    """Lag [s], autocorrelation of an error by name, and the samples that it comes from."""
+    """Lag [s], autocorrelation of an error by name, and the number of samples for it."""
     interval = float(np.median(np.diff(views[0].time)))
     count = min(max(int(LAGS * views[0].time.size), 2), *(view.time.size // 2 for view in views))
     total = np.zeros(count)
@@ -146,7 +147,7 @@ def state_figure(views: Sequence[View], over: str, unit: str, motion: Motion) ->
 
 
 def law_figure(law: Characteristic) -> go.Figure:
-    """A law of each model, with what the recordings say around the final one."""
+    """A law of each model, with points from the recordings around the final one."""
     plot = go.Figure()
     if law.points is not None:
         plot.add_trace(_points(*law.points, "what the recording says", "measured", 0.35))
@@ -157,7 +158,7 @@ def law_figure(law: Characteristic) -> go.Figure:
 
 
 def bars_figure(bars: Sequence[Bar]) -> go.Figure:
-    """How much of each effect the recordings still allow, beside its typical size."""
+    """The largest size of each effect that the recordings allow, beside its typical size."""
     drawn = go.Bar(
         x=[bar.share for bar in bars],
         y=[bar.name for bar in bars],

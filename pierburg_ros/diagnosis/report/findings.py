@@ -139,15 +139,15 @@ def _estimate(conclusion: Conclusion, name: str, value: float, unit: str) -> Est
 
 
 def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
-    """What may stand for a quantity of the chosen explanation."""
+    """The alternatives to a quantity of the chosen explanation."""
     return [list(tie.instead) for tie in conclusion.alternatives if tie.quantity == quantity]
 
 
 def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]:
     """Every base parameter, and those of effects that the actuator always has.
 
-    Each nominal, as the chosen explanation has it, and whether it drifted. One that something remains beside may be
-    moved without being told from its nominal value: that is no drift.
+    Each has its nominal value, its value in the chosen explanation, and whether it drifted. Where a residual remains, a
+    parameter may be moved without being distinguished from its nominal value: that is no drift.
     """
     actuator = found.data.actuator
     final = conclusion.final
@@ -171,13 +171,13 @@ def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]
 
 
 def _in_ratio(actuator: Actuator, name: str) -> list[list[str]]:
-    """What is fixed, and might as well have drifted in the place of a parameter."""
+    """The fixed parameters that may have drifted in place of a parameter."""
     fixed = in_ratio(actuator, name)
     return [list(fixed)] if fixed else []
 
 
 def changes(conclusion: Conclusion) -> list[Change]:
-    """The parameter that changed in the middle of the recording, if one did, and when: between which moments."""
+    """The parameter that changed in the middle of the recording, if one did, and the interval of the moment."""
     name = conclusion.final.explanation.changed
     if name is None:
         return []
@@ -187,7 +187,7 @@ def changes(conclusion: Conclusion) -> list[Change]:
 
 
 def fit_quality(found: Found, conclusion: Conclusion) -> FitQuality:
-    """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has seen."""
+    """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has used."""
     data = found.data
 
     def errors(samples: Flags) -> Errors:
@@ -217,7 +217,7 @@ def rmse(data: Data, samples: Flags, model: Model, switch: Switch | None = None)
 
 
 def candidates(found: Found, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
-    """The explanations tried, each name once, the best first: error on unseen samples, evidence, status."""
+    """The explanations tried, each name once, the best first: error on test samples, evidence, status."""
     data, chosen = found.data, conclusion.chosen
     status = statuses(found, chosen)
     return [
@@ -248,7 +248,7 @@ def ruled_out(limit: Limit, actuator: Actuator) -> RuledOut:
 
 
 def remaining(data: Data, conclusion: Conclusion, parts: Shares) -> Remaining:
-    """What the written model leaves of the first recording, as a share and in words."""
+    """The remainder of the first recording under the written model, as a share and in words."""
     residual = data.residual(conclusion.model, conclusion.final.switch)
     discrepancy = Kalman(data, data.train).most_likely(residual)
     run = data.longest
@@ -257,7 +257,7 @@ def remaining(data: Data, conclusion: Conclusion, parts: Shares) -> Remaining:
 
 
 def excluded(data: Data) -> list[Excluded]:
-    """The spans that were left out, of every recording."""
+    """The spans of every recording that were left out."""
     names = {run.number: run.name for run in data.runs}
     return [
         Excluded(start=each.span[0], end=each.span[1], why=f"{names.get(each.number, 'a recording')}: {each.why}")
@@ -266,15 +266,15 @@ def excluded(data: Data) -> list[Excluded]:
 
 
 def cannot_act(actuator: Actuator) -> list[CannotAct]:
-    """Effects that are searched for elsewhere and cannot act in this kind of actuator."""
+    """Effects that are tested in other kinds of actuator and cannot act in this one."""
     obstacles = {effect.id: actuator.obstacle(effect) for effect in EFFECTS if effect.variants}
     return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
 
 
 def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
-    """Windows and regimes of the first recording in which the mismatch gathers; none where there is none.
+    """Windows and regimes of the first recording in which the mismatch concentrates; none where there is no mismatch.
 
-    Windows are where the named effects move the signal, or, where none is named, where the error is.
+    Windows are where the named effects move the signal or, if none is named, where the error is.
     """
     if conclusion.verdict in ("consistent", "parameter_drift"):
         return [], []
@@ -290,7 +290,7 @@ def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Re
 
 
 def residual_torque(shape: Shape | None) -> ResidualTorque | None:
-    """What is left as a torque over angle and velocity, and over time."""
+    """The remainder as a torque over angle and velocity, and over time; None where there is none."""
     if shape is None or shape.model.residual_torque is None:
         return None
     grid = {key: np.asarray(values).tolist() for key, values in shape.model.residual_torque.items()}
@@ -301,7 +301,7 @@ def residual_torque(shape: Shape | None) -> ResidualTorque | None:
 
 
 def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
-    """Time [s], measured, command, and what the three models make of a run, each (samples,)."""
+    """Time [s], measured, command, and the simulations of a run by the three models, each (samples,)."""
     place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
     return {
         "time": run.time,

@@ -1,4 +1,4 @@
-"""How far a model may be trusted ahead: its error some time after it has been set to the measured state."""
+"""Prediction error of a model: its error some time after it has been set to the measured state."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pierburg_ros.estimation.run import Switch
 from pierburg_ros.plant import Model
 
 HORIZONS = (0.1, 0.3, 1.0, 3.0)
-"""Times after the start from the measured state [s]. Given: what the report promises."""
+"""Times after the start from the measured state [s]. Given: the times that the report promises."""
 LAST = 0.2
-"""Share of a stretch, at its end, over which the error after it is taken. Chosen: it averages the noise; not varied."""
+"""Share of a stretch, at its end, over which the error is taken. Chosen: it averages the noise; not varied."""
 
 Simulated = tuple[Model, Switch | None]
 
@@ -24,9 +24,9 @@ Simulated = tuple[Model, Switch | None]
 def horizons(data: Data, models: Sequence[Simulated]) -> list[Horizon]:
     """RMSE of the nominal, the recalibrated and the final model after each of `HORIZONS`, and over whole runs.
 
-    On samples that test, that neither fit nor choice has used: each stands in the last part of a stretch. What a model
-    remembers briefly (play, bristles) starts afresh with each stretch; one that remembers longer (heat) is not in a
-    state that a sensor of the angle shows, and is told over whole runs alone.
+    The errors are those of test samples, which neither fit nor choice has used. Each sample lies in the last part of a
+    stretch. A brief memory of a model (play, bristles) starts afresh with each stretch. A longer memory (heat) is a
+    state that an angle sensor does not show: such a model has an error over whole runs only.
     """
     found = []
     for after in (*HORIZONS, math.inf):

@@ -30,9 +30,9 @@ VERDICTS = {
     "missing_physics": "the model lacks the effects named here, and with them it is right",
     "unexplained": "something is left that no effect of the catalogue removes",
 }
-"""What each verdict means."""
+"""The meaning of each verdict."""
 NOTHING = "nothing is concluded: the signals are not what they are read as"
-"""What a verdict means where the input is at fault."""
+"""The meaning of a verdict where the input is at fault."""
 ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""
 
@@ -42,7 +42,7 @@ def write_page(
 ) -> None:
     """Write the report as one page that needs no network.
 
-    `provenance` is what it says of its origin; `sources` are the recordings' files, for commands to copy.
+    `provenance` is the text on its origin; `sources` are the recordings' files, for commands to copy.
     """
     path.write_text(page(result, provenance, sources), encoding="utf-8")
 
@@ -53,7 +53,7 @@ def page(
     sources: Sequence[Path] = (),
     library_at: str = "",
 ) -> str:
-    """The report as HTML; `library_at` is where it finds the plotting library, if not within itself."""
+    """The report as HTML; `library_at` is the address of the plotting library, if that is not part of the page."""
     diagnosis, exhibits = result.diagnosis, result.exhibits
     views = exhibits.views or (first_view(result),)
     found = places(diagnosis.locations)
@@ -88,7 +88,7 @@ def page(
 
 
 def time_plots(diagnosis: Diagnosis, views: Sequence[View], tried: Sequence[Tried]) -> list[Plot]:
-    """Every recording over time; windows and switches belong to the first."""
+    """Every recording over time; the located windows belong to the first."""
     plots = []
     for number, view in enumerate(views):
         found = places(diagnosis.locations) if number == 0 else []
@@ -99,7 +99,7 @@ def time_plots(diagnosis: Diagnosis, views: Sequence[View], tried: Sequence[Trie
 
 
 def residual_plots(views: Sequence[View], unit: str, motion: Motion) -> list[Plot]:
-    """What both errors repeat over time, and where in the state they are."""
+    """The autocorrelation of both errors, and the errors over the state."""
     if not views:
         return []
     repeated = "Autocorrelation of the errors; that of white noise is within the grey band"
@@ -117,7 +117,7 @@ def law_plots(result: Result) -> list[Plot]:
 
 
 def torque_plots(diagnosis: Diagnosis) -> list[Plot]:
-    """What no effect explains, over angle and velocity, and over time."""
+    """The torque that no effect explains, over angle and velocity, and over time."""
     residual = diagnosis.residual_torque
     if residual is None:
         return []
@@ -137,7 +137,7 @@ def torque_plots(diagnosis: Diagnosis) -> list[Plot]:
 
 
 def limit_plots(result: Result) -> list[Plot]:
-    """How much of each other effect is still possible."""
+    """The largest size of each other effect that is still possible."""
     limits = bars(result.diagnosis.ruled_out, result.model)
     if not limits:
         return []
@@ -146,7 +146,7 @@ def limit_plots(result: Result) -> list[Plot]:
 
 
 def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
-    """How the error grows with the time of a prediction."""
+    """The error over the time of a prediction."""
     horizons = diagnosis.fit.horizons
     if not horizons:
         return []
@@ -160,7 +160,7 @@ def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
 
 
 def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, str]]:
-    """What to run next with the corrected model."""
+    """Commands to run next with the corrected model."""
     if not sources:
         return []
     replay = ["pierburg", "replay", str(sources[0]), "--model", "model.yaml", "--output", "replayed"]
@@ -172,7 +172,7 @@ def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, st
 
 
 def in_colours(tried: Sequence[Tried]) -> list[Tried]:
-    """What is drawn first, so that rows and curves count their colours alike."""
+    """The explanations with the drawn ones first, so that rows and curves count their colours alike."""
     return sorted(tried, key=lambda row: row.key == "")
 
 
@@ -190,14 +190,14 @@ def tried_row(row: Tried, place: int) -> dict[str, Any]:
 
 
 def standing(row: Tried) -> str:
-    """The status of an explanation in words; one may fit better where something remains or time was over."""
+    """The status of an explanation in words; one may fit better where a residual remains or time ran out."""
     if row.name.startswith(OFF):
         return "switched off, nothing fitted again"
     return "fits better, not chosen" if row.lack < -SIGNIFICANT else row.status
 
 
 def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
-    """A regime for people: angles in degrees, shares as they stand."""
+    """A regime for people: angles in degrees, shares unchanged."""
     regime = diagnosis.regimes[index]
     factor = math.degrees(1.0) if regime.unit in ANGULAR else 1.0
     unit = ANGULAR.get(regime.unit, "" if regime.unit == "1" else regime.unit)
@@ -212,7 +212,7 @@ def regime_row(diagnosis: Diagnosis, index: int) -> dict[str, Any]:
 
 
 def first_view(result: Result) -> View:
-    """The first recording where nothing is concluded of it: as measured, and what the models make of it."""
+    """The first recording where nothing is concluded: the signals as measured, and the errors of the models."""
     signals = result.signals
     errors = {key: signals["measured"] - signals[key] for key in figures.MODELS}
     errors = {key: error for key, error in errors.items() if np.isfinite(error).all()}

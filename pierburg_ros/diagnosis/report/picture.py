@@ -1,4 +1,4 @@
-"""The report in one picture, to be printed: signals, errors before and after, and input of the first recording."""
+"""The report in one picture for print: signals, errors before and after, and input of the first recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The located windows as a person looks for them: neighbours as one, the most of the mismatch first."""
+"""The located windows for people: neighbours are merged, and the largest share of the mismatch comes first."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pierburg_ros.diagnosis.schema import Location
 
 APART = 0.005
-"""Windows apart by less than this share of the time from the first to the last are shown as one. Chosen: on a plot as
-wide as a page they touch."""
+"""Windows apart by less than this share of the time from the first to the last are merged. Chosen: on a plot as wide as
+a page they touch."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """A window [s] with its share of the mismatch and what the shaft does there."""
+    """A window [s] with its share of the mismatch and the regime of the shaft there."""
 
     start: float
     end: float
@@ -23,7 +23,7 @@ class Place:
 
 
 def places(locations: Sequence[Location]) -> list[Place]:
-    """The windows with neighbours merged, sorted by their share; what the larger part does is said of the whole."""
+    """The windows with neighbours merged, sorted by their share; a merged window has the regime of its largest part."""
     merged: list[list[Location]] = []
     ends = [moment for each in locations for moment in (each.start, each.end)]
     apart = APART * (max(ends) - min(ends)) if ends else 0.0

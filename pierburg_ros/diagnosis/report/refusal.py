@@ -1,4 +1,4 @@
-"""What is said where the signals are not what they are read as: which, how that shows, what mends it, and no more."""
+"""The result where signals are not what they are read as: which ones, how that shows, and how to correct it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def refusal(recordings: Sequence[Recording], nominal: Model, faults: Sequence[Fa
 
 
 def _quality(recordings: Sequence[Recording]) -> DataQuality:
-    """Sampling of the recordings; nothing is said of their motion."""
+    """Sampling of the recordings; their motion is not judged."""
     intervals = np.concatenate([np.diff(recording.time) for recording in recordings])
     median = float(np.median(intervals))
     return DataQuality(
@@ -53,7 +53,7 @@ def _quality(recordings: Sequence[Recording]) -> DataQuality:
 
 
 def _signals(recording: Recording) -> dict[str, np.ndarray]:
-    """Time [s], measured and the input of a recording; no model is shown beside them."""
+    """Time [s], measured and the input of a recording; the models have no values."""
     nothing = np.full(recording.time.size, np.nan)
     return {
         "time": recording.time,

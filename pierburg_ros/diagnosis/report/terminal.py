@@ -16,7 +16,7 @@ from pierburg_ros.pages.numbers import confidence, interval, ties, unit, value, 
 
 
 def shown(diagnosis: Diagnosis) -> Group:
-    """What a terminal shows of a diagnosis."""
+    """The parts of a diagnosis that a terminal shows."""
     verdict = diagnosis.verdict.replace("_", " ")
     parts: list[RenderableType] = [Panel(Text(diagnosis.summary), title=verdict, expand=False)]
     if diagnosis.effects or any(p.drifted for p in diagnosis.parameters.values()):
@@ -36,7 +36,7 @@ def shown(diagnosis: Diagnosis) -> Group:
 
 
 def ruled_out(limit: RuledOut) -> str:
-    """What a recording excludes, in a few words."""
+    """The strength that a recording excludes, in a few words."""
     sign, end = ("<", limit.above) if limit.above is not None else (">", limit.below)
     return f"{limit.id}.{limit.parameter} {sign} {end:.2g}{unit(limit.unit)}"
 
@@ -56,7 +56,7 @@ def _changed(diagnosis: Diagnosis) -> Listing:
 
 
 def _row(name: str, estimate: Estimate | BaseParameter, alternatives: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Name, value, interval, and what it cannot be told from."""
+    """Name, value, interval, and the quantities from which it is not distinguished."""
     ends = estimate.ci95
     shown = value(estimate.value, ends) + unit(estimate.unit) if estimate.value is not None else ""
     known = interval(ends) if ends and estimate.identifiable else "not identifiable"

@@ -1,4 +1,4 @@
-"""The explanations that were tried, one row for each name, with what each leaves beside the chosen one."""
+"""The explanations that were tried, one row for each name, with the error of each beside the chosen one."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from pierburg_ros.estimation.explanation import WHEN, quantities
 from pierburg_ros.pages.numbers import words
 
 DRAWN = 5
-"""Rivals whose error is drawn. Work: each adds 0.1 MB to the page of a minute at 500 Hz; the others stand in the table
-alone."""
+"""Number of rivals whose error is drawn. Work: each adds 0.1 MB to the page of a minute at 500 Hz; the others are in
+the table alone."""
 NOMINAL = "nominal"
-"""Names the explanation that changes nothing."""
+"""Name of the explanation that changes nothing."""
 RECALIBRATED = "parameters_re-estimated"
-"""Stands in the name of an explanation for all parameters that were re-estimated, of which there may be many."""
+"""Replaces the names of all re-estimated parameters, which may be many, in the name of an explanation."""
 OFF = "off-"
-"""Begins the name of the final model with one of its effects switched off, then comes the effect's id."""
+"""Prefix to the id of an effect: the name of the final model with that effect switched off."""
 
 
 def title(row: Tried) -> str:
@@ -39,7 +39,7 @@ def identifier(fit: Fit) -> str:
 
 
 def shortened(fit: Fit, recalibrated: Fit) -> str:
-    """The identifier of an explanation, with one name for all parameters where it has those of the recalibrated one."""
+    """The identifier of an explanation, with one name for all parameters if it has all of the recalibrated one."""
     own, drifted = recalibrated.explanation.drifted, fit.explanation.drifted
     if len(own) < 2 or not set(own) <= set(drifted):
         return identifier(fit)
@@ -48,7 +48,7 @@ def shortened(fit: Fit, recalibrated: Fit) -> str:
 
 
 def distinct(found: Found, chosen: Fit) -> list[Fit]:
-    """The chosen fit, then of every other name the best one, the best first."""
+    """The chosen fit, then the best fit of every other name, the best first."""
     best = {identifier(chosen): chosen}
     for fit in sorted(found.fits.values(), key=lambda fit: fit.chi2):
         best.setdefault(identifier(fit), fit)
@@ -56,7 +56,7 @@ def distinct(found: Found, chosen: Fit) -> list[Fit]:
 
 
 def statuses(found: Found, chosen: Fit) -> dict[str, Status]:
-    """By name: chosen; tied, which fit neither worse nor better without containing the chosen one; or rejected."""
+    """Status by name: chosen, tied (fits neither worse nor better, and does not contain the chosen one) or rejected."""
     own = set(quantities(chosen.explanation))
     least = 2.0 * chosen.misfit - closest(chosen)
     equals = [fit for fit in tied(chosen, found.fits.values(), found.estimator) if fit.misfit >= least]
@@ -72,7 +72,7 @@ def statuses(found: Found, chosen: Fit) -> dict[str, Status]:
 def rivals(found: Found, conclusion: Conclusion) -> list[tuple[Tried, Fit]]:
     """The chosen explanation with its last values, what ties with it or fits better, and all others of its size.
 
-    Where nothing was added to the nominal model, what one quantity more would have gained.
+    If nothing was added to the nominal model, these others are explanations with one quantity.
     """
     chosen = conclusion.chosen
     status = statuses(found, chosen)

@@ -1,4 +1,4 @@
-"""The diagnosis in words: why an effect, what it means, what to record next."""
+"""The diagnosis in words: why an effect is named, what it means, what to record next."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ SEPARATES = {
     "supply_voltage": "log the supply voltage as supply_voltage",
     "coulomb_friction": "move slowly in both directions over the same angles",
 }
-"""What tells a base parameter from what looks like it."""
+"""How to distinguish a base parameter from what looks like it."""
 AT_STOPS = {
     "spring_preload": "run against both stops and return at duty 0",
     "spring_stiffness": "run against both stops",
 }
-"""The same, where there are stops."""
+"""How to distinguish others where there are stops."""
 HELD = "measure one of them by other means"
-"""The same, for any that these do not help."""
+"""The advice where `SEPARATES` and `AT_STOPS` do not help."""
 HOLD = "Hold what was measured: its value as nominal with `free: false` in the actuator's description."
-"""What to do with a number that was measured by other means."""
+"""The advice for a number that was measured by other means."""
 
 
 def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
@@ -47,7 +47,7 @@ def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
 def effect_explanation(
     effect: str, parameters: Mapping[str, Estimate], ties: Sequence[Sequence[str]], reason: str
 ) -> str:
-    """Why the effect is named, with its numbers and what it cannot be told from."""
+    """Why the effect is named, with its numbers and the quantities from which it is not distinguished."""
     declared = EFFECT[effect]
     values = ", ".join(quantity(name, estimate) for name, estimate in parameters.items())
     text = f"{declared.sentence} Where it shows: {declared.shows_in}. Found: {values}. {reason}"
@@ -57,7 +57,7 @@ def effect_explanation(
 
 
 def reason(support: Support, unit: str) -> str:
-    """Why an effect is believed; `unit` is the measured one."""
+    """Why an effect is named; `unit` is the measured unit."""
     if support.left_out is not None:
         return by_recordings_left_out(support.left_out, support.left_out.unit or unit)
     if support.weight is not None:
@@ -68,7 +68,7 @@ def reason(support: Support, unit: str) -> str:
 
 
 def by_evidence(gain: float, without: str) -> str:
-    """Why an effect is named that the best explanation needs; `without`: the name of the best one that lacks it."""
+    """Why an effect is named that the best explanation needs; `without` names the best explanation that lacks it."""
     rival = "the model as described" if without == NOMINAL else numbers.words(without)
     return (
         f"The best explanation without it that changes no more quantities is {rival}: it fits "
@@ -78,7 +78,7 @@ def by_evidence(gain: float, without: str) -> str:
 
 
 def by_weight(weight: Weight) -> str:
-    """Why an effect is named although something remains."""
+    """Why an effect is named although a residual remains."""
     if weight.by_rule is not None:
         return (
             "The controller that made the input shows it: the input follows from setpoint and angle by one rule. With "
@@ -103,7 +103,7 @@ def by_grid() -> str:
 
 
 def by_recordings_left_out(said: LeftOut, unit: str) -> str:
-    """Why an effect is named where no explanation accounts for all, and which recordings share it."""
+    """Why an effect is named where no explanation accounts for the whole residual, and which recordings share it."""
     shared = said.helped == said.parts
     on = f", on {', '.join(said.recordings)}" if said.recordings else ""
     some = f"it helps in {said.helped} of {said.parts} parts{on}"
@@ -115,7 +115,7 @@ def by_recordings_left_out(said: LeftOut, unit: str) -> str:
 
 
 def untestable(mark: float) -> str:
-    """Why an effect cannot be seen."""
+    """Why an effect cannot be detected."""
     return (
         "at a plausible strength it changes these recordings by less than their noise once the other parameters are "
         f"fitted again (by {mark:.2g} in chi-squared; {SIGNIFICANT:g} would show)"
@@ -131,7 +131,7 @@ def summary(
     unit: str,
     stopped: bool = False,
 ) -> str:
-    """One paragraph for a technician; `stopped`: before all of the catalogue was tried."""
+    """One paragraph for a technician; `stopped`: the search ended before it had tried the whole catalogue."""
     before, after, floor = fit.validation.nominal_rmse, fit.validation.final_rmse, fit.noise_floor
     errors = (
         f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
@@ -162,7 +162,7 @@ def summary(
 
 
 def needless(effects: Sequence[str], text: str) -> str:
-    """The summary, with `effects` that would account for all and are not named: an error of any shape does so too."""
+    """The summary, with `effects` that would account for all but are not named: an error of any shape would do so."""
     if not effects:
         return text
     several = len(effects) > 1
@@ -176,7 +176,7 @@ def needless(effects: Sequence[str], text: str) -> str:
 def warned(data: Data, verdict: Verdict, text: str) -> str:
     """The summary after a warning where messages are missing.
 
-    Where they may have hidden anything it is without a conclusion.
+    If the missing messages may have hidden anything, the summary has no conclusion.
     """
     if not data.warnings:
         return text
@@ -191,7 +191,7 @@ def warned(data: Data, verdict: Verdict, text: str) -> str:
 
 
 def remarked(remarks: Sequence[str], text: str) -> str:
-    """The summary after what is remarked of dirty recordings."""
+    """The summary after the remarks on dirty recordings."""
     return " ".join([*remarks, text])
 
 
@@ -201,7 +201,7 @@ def provisional(text: str, stopped: bool) -> str:
 
 
 def cautioned(limits: Sequence[Limit], text: str) -> str:
-    """The summary, or, where the recordings cannot decide anything, why not."""
+    """The summary, after the reason why the recordings cannot decide anything, if there is one."""
     decisive = [limit.finding for limit in limits if limit.decisive]
     return f"Nothing can be concluded: {' '.join(decisive)} {text}" if decisive else text
 
@@ -214,7 +214,7 @@ def advice(
     limits: Sequence[Limit],
     stops: bool = True,
 ) -> list[str]:
-    """What to record next, most useful first; `stops`: whether the actuator has any to run against."""
+    """What to record next, most useful first; `stops`: whether the actuator has stops to run against."""
     steps = [limit.record for limit in limits]
     for effect in effects:
         for tie in effect.indistinguishable_from:
@@ -231,7 +231,7 @@ def advice(
 
 
 def untested(effects: Sequence[str]) -> list[str]:
-    """What to do about limits for which there was no time."""
+    """The advice for effects whose limits were not computed for lack of time."""
     if not effects:
         return []
     listed = ", ".join(numbers.words(effect) for effect in effects)
@@ -247,13 +247,13 @@ def _separating(name: str, tie: Sequence[str], stops: bool) -> str:
 
 
 def _when(change: Change) -> str:
-    """The moment of a change, or the two between which it lies, where three digits tell them apart."""
+    """The moment of a change, or the ends of its interval where three digits distinguish them."""
     low, high = (f"{end:.3g}" for end in change.time_ci95 or (change.time, change.time))
     return f"at {low} s" if low == high else f"between {low} and {high} s"
 
 
 def _or(ties: Sequence[Sequence[str]]) -> str:
-    """What a quantity is not told from, to follow its name; nothing where there is none."""
+    """The alternatives of a quantity, as words that follow its name; empty where there are none."""
     said = [f"{_listed(tie)}{' together' if len(tie) > 1 else ''}" for tie in ties]
     return "".join(f", or {each}" for each in said) + (", which fit alike" if said else "")
 

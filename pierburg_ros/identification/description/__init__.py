@@ -1,1 +1,1 @@
-"""What a description of an actuator implies: derived numbers, slips in it, and what recordings could tell of it."""
+"""Checks of an actuator's description: derived numbers, slips in it, and which numbers recordings could determine."""

@@ -1,4 +1,4 @@
-"""Numbers that follow from a description, and between which limits those of real actuators lie."""
+"""Numbers that follow from a description, with the limits of real actuators."""
 
 from __future__ import annotations
 
@@ -12,28 +12,30 @@ from pierburg_ros.actuators.units import unit_of
 GRAVITY = 9.81
 """Acceleration of free fall [m/s^2]. Given: at sea level, to three digits."""
 WEAKEST, STRONGEST = 1.0, 100.0
-"""Torque of the stalled motor over that of load and friction together, least and most. Derived: with less it does not
-move. Chosen: the valve has 3.8, the bench 1.9, a drive that lifts its load slowly several tens."""
+"""Smallest and largest ratio of the stall torque of the motor to the torque of load and friction. Derived: with less it
+does not move. Chosen: the valve has 3.8, the bench 1.9, a drive that lifts its load slowly several tens."""
 LIGHTEST, HEAVIEST = 1e-7, 30.0
-"""Time in which the unloaded motor runs up over that in which it crosses the travel. Chosen: the valve has 2e-4, a
-turntable or a reaction wheel up to several."""
+"""Smallest and largest ratio of the time in which the unloaded motor runs up to that in which it crosses the travel.
+Chosen: the valve has 2e-4, a turntable or a reaction wheel up to several."""
 QUICKEST, SLOWEST = 1e-3, 60.0
-"""Time in which the unloaded motor crosses the travel [s]. Given: a voice coil takes milliseconds, a gate valve a
-minute."""
+"""Shortest and longest time in which the unloaded motor crosses the travel [s]. Given: a voice coil takes milliseconds,
+a gate valve a minute."""
 FAINTEST, FIERCEST = 1e-3, 1e3
-"""Current of the stalled motor [A]. Given: a watch's motor draws a milliampere, a traction motor a kiloampere."""
+"""Smallest and largest current of the stalled motor [A]. Given: a watch's motor draws a milliampere, a traction motor a
+kiloampere."""
 NARROWEST, WIDEST = 0.01, 20.0
-"""Travel between stops [rad]. Chosen: half a degree to three turns; a travel of 90 is one in degrees."""
+"""Smallest and largest travel between stops [rad]. Chosen: half a degree to three turns; a travel of 90 is one in
+degrees."""
 SHORTEST_ARM, LONGEST_ARM = 1e-3, 10.0
-"""Length [m] of the pendulum that inertia and weight imply, inertia over weight times lever arm being length over
+"""Shortest and longest pendulum [m] that inertia and weight imply: inertia over weight times lever arm is length over
 gravity. Given: what stands on a bench."""
 ROUGHEST = 1.0
-"""Friction over the weight of a pendulum, at most. Derived: with more it does not swing."""
+"""Largest ratio of friction to the weight of a pendulum. Derived: with more friction it does not swing."""
 
 
 @dataclass(frozen=True)
 class Derived:
-    """A number that follows from others, with the limits beyond which a real actuator does not lie."""
+    """A number that follows from others, with the limits within which real actuators lie."""
 
     name: str
     value: float
@@ -44,7 +46,7 @@ class Derived:
 
     @property
     def plausible(self) -> bool:
-        """Whether a real actuator may have it."""
+        """Whether a real actuator may have this value."""
         return self.least <= self.value <= self.most
 
 
@@ -120,7 +122,7 @@ def _of_motor(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
 
 
 def _needed(actuator: Actuator, value: dict[str, float]) -> float:
-    """Largest torque of load and friction [N.m]: at the far stop, or a pendulum held level."""
+    """Largest torque of load and friction [N.m]: at the far stop, or for a pendulum held level."""
     travel = actuator.upper_stop - actuator.lower_stop
     reach = travel if math.isfinite(travel) else 0.0
     spring = abs(value.get("spring_preload", 0.0)) + value.get("spring_stiffness", 0.0) * reach
@@ -128,5 +130,5 @@ def _needed(actuator: Actuator, value: dict[str, float]) -> float:
 
 
 def _is_loaded(value: dict[str, float]) -> bool:
-    """Whether anything but friction holds against the motor."""
+    """Whether anything except friction holds against the motor."""
     return any(value.get(name, 0.0) for name in ("spring_preload", "spring_stiffness", "gravity_torque"))

@@ -1,4 +1,4 @@
-"""What to ask a person who describes an actuator, and the description that the answers make."""
+"""The questions to a person who describes an actuator, and the description that follows from the answers."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError
 
 RANGE = 10.0
-"""Factor by which a number may be off, either way, where nothing says more. Chosen: wider than any drift."""
+"""Factor by which a number may be wrong, either way, where nothing says more. Chosen: wider than any drift."""
 FIXED = ("gear_ratio", "gravity_torque", "hall_voltage_closed", "hall_voltage_open")
-"""Numbers that are known better than recordings tell them."""
+"""Numbers that are known better than recordings determine them."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """One thing to ask: which key it answers, in what words, what may be answered, and what an empty answer means."""
+    """One question: the key that it answers, its words, the possible answers, and the meaning of an empty answer."""
 
     key: str
     text: str
@@ -39,12 +39,12 @@ KINDS = (
 )
 
 Ask = Callable[[Question, str], str]
-"""Gives the answer to a question; the text says what was wrong with the answer before, if there was one."""
+"""Gives the answer to a question; the text says what was wrong with the last answer, if there was one."""
 Used = TypeVar("Used")
 
 
 def answered(ask: Ask) -> dict[str, Any]:
-    """The content of a description, from the answers to questions; each is asked again until it can be used."""
+    """The content of a description, from answers to questions; each question is repeated until its answer is usable."""
     content: dict[str, Any] = {question.key: _used(question, partial(_checked, question), ask) for question in KINDS}
     stops = content.pop("stops")
     if stops:
@@ -60,7 +60,7 @@ def answered(ask: Ask) -> dict[str, Any]:
 
 
 def _used(question: Question, use: Callable[[str], Used], ask: Ask) -> Used:
-    """What `use` makes of the first answer that it does not refuse."""
+    """The result of `use` for the first answer that it does not refuse."""
     problem = ""
     while True:
         answer = ask(question, problem)
@@ -71,7 +71,7 @@ def _used(question: Question, use: Callable[[str], Used], ask: Ask) -> Used:
 
 
 def declared(name: str, nominal: float, origin: str) -> dict[str, Any]:
-    """The entry of a parameter with a range about its `nominal` value."""
+    """The entry of a parameter with a range around its `nominal` value."""
     size = RANGE * abs(nominal) or RANGE
     low = nominal / RANGE if nominal > 0.0 else -size
     if name in ("spring_stiffness", "coulomb_friction", "supply_voltage", "gravity_torque", "spring_preload"):

@@ -1,4 +1,4 @@
-"""A description that starts from a recording: what it tells is identified, what it does not is marked as guessed."""
+"""A description from a recording: numbers that it determines are identified, the others are marked as guessed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LIKE = {
     ("torque", "position"): "ak80",
     ("current", "position"): "odrive",
 }
-"""The shipped actuator that a recording of this input and measured quantity starts from."""
+"""The shipped actuator to start from, by the input and the measured quantity of a recording."""
 
 
 def alike(recording: Recording) -> str:
@@ -34,7 +34,7 @@ def alike(recording: Recording) -> str:
 
 
 def identified(recording: Recording, start: Actuator, name: str, jobs: int | None = None) -> dict[str, Any]:
-    """The content of a description of the recorded actuator, begun from `start`."""
+    """The content of a description of the recorded actuator, started from `start`."""
     found = identify(Model.nominal(start), [recording], jobs=jobs)
     values = found.fitted.model.values
     stops = {"lower": start.lower_stop, "upper": start.upper_stop} if start.has_stops else None

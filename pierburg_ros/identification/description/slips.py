@@ -1,4 +1,4 @@
-"""Which single number of a description, written in another unit or with another sign, makes all of it plausible."""
+"""Slips in a description: single numbers in another unit, wrong signs, and ranges that a fit cannot use."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ OTHERS = {
     "N.m/A": {1e-3: "mN.m/A", 1e-2: "N.cm/A", 0.0981: "kgf.cm/A"},
     "N.m/rad": {1e-3: "mN.m/rad", 180.0 / math.pi: "N.m/degree", math.pi / 180.0: "N.m/rad taken for N.m/degree"},
 }
-"""By unit: what a number in another one is multiplied by. Given: by the units that data sheets use."""
+"""By unit: the factors of numbers written in other units. Given: by the units that data sheets use."""
 MAGNITUDES = (
     "armature_resistance", "torque_constant", "gear_ratio", "spring_stiffness", "gravity_torque", "coulomb_friction",
     "total_inertia", "supply_voltage",
 )  # fmt: skip
-"""Numbers that are not negative in any actuator."""
+"""Numbers that are negative in no actuator."""
 
 
 @dataclass(frozen=True)
 class Remark:
-    """Something about a description that a person should look at."""
+    """Something in a description that a person should check."""
 
     about: str
     what: str
 
 
 def remarks(actuator: Actuator) -> list[Remark]:
-    """What is implausible, and which single slip would be the reason."""
+    """The implausible numbers, and the single slips that would explain them all."""
     wrong = [each for each in derived(actuator) if not each.plausible]
     found = [Remark(each.name, _told(each)) for each in wrong]
     if wrong:
@@ -47,7 +47,7 @@ def _told(each: Derived) -> str:
 
 
 def _slips(actuator: Actuator) -> Iterator[tuple[str, str]]:
-    """Each number that alone, in another unit, makes every derived number plausible."""
+    """Each number that makes every derived number plausible if only its unit is changed."""
     for name, parameter in actuator.parameters.items():
         for factor, written in OTHERS.get(parameter.unit, PREFIXES).items():
             other = factor * parameter.nominal
@@ -75,7 +75,7 @@ def _of_signs(actuator: Actuator) -> Iterator[Remark]:
 
 
 def _of_ranges(actuator: Actuator) -> Iterator[Remark]:
-    """Parameters that a fit may change and that cannot move both ways."""
+    """Parameters that a fit may change but cannot move both ways."""
     for name, parameter in actuator.parameters.items():
         at_end = parameter.nominal in (parameter.minimum, parameter.maximum)
         if parameter.free and at_end and parameter.nominal != 0.0:

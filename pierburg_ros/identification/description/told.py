@@ -1,4 +1,4 @@
-"""What recordings of an actuator could tell of its numbers: a standard excitation of the description, simulated."""
+"""Which numbers of an actuator recordings could determine, by a simulated standard excitation of its description."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Channel, Recording
 
 SAMPLES = 6000
-"""Samples of the simulated bench. Work: a fit of them takes seconds."""
+"""Number of samples of the simulated bench. Work: a fit of them takes seconds."""
 LEVELS = 60
-"""Levels of the input, each held for the same time. Chosen: 100 samples each, from a fraction of a movement to some."""
+"""Number of levels of the input. Chosen: 100 samples each on average, from a fraction of a movement to several."""
 HELD = (0.5, 1.5, 6.0)
-"""Times for which levels are held in turn, in the times in which the actuator crosses its travel. Chosen: too short to
-settle, and long enough."""
+"""Times for which levels are held in turn, in units of the time in which the actuator crosses its travel. Chosen: some
+are too short to settle, and some are long enough."""
 STRENGTH = 0.6
 """Largest level, as a share of the actuator's own large input. Chosen: full input holds the shaft at a stop."""
 RESOLUTION = 1e-3
@@ -25,7 +25,7 @@ RESOLUTION = 1e-3
 
 
 def told(model: Model, seed: int = 0) -> dict[str, Finding]:
-    """What a recording of a standard excitation tells of each number of `model`; InputError where it cannot be run."""
+    """The finding for each number of `model` from a standard excitation; InputError where that cannot be simulated."""
     recording = bench(model, seed)
     fitted = fit(model, [recording], free_names(model), starts=1, refine=False, tolerance=1e-3, jobs=1)
     return identifiability(fitted, [recording])

@@ -1,1 +1,1 @@
-"""Experiments: excitation recipes, and the sequence that tells two explanations apart."""
+"""Experiments: excitation recipes, and the sequence that distinguishes two explanations."""

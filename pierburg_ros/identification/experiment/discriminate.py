@@ -1,8 +1,8 @@
-"""Designs the duty sequence that best tells two explanations of an actuator apart.
+"""Designs the duty sequence that best distinguishes two explanations of an actuator.
 
-A sequence is worth as much as is left between the two answers after each explanation has been fitted to the
-other's: what refitting absorbs, no recording can show. Segments of the recipes are first combined by a linear
-estimate of what is left, then the best few sequences are judged by real fits.
+The value of a sequence is the difference that remains after each explanation has been fitted to the other's response:
+no recording can show what refitting absorbs. The design first combines segments of the recipes by a linear estimate of
+this difference. Real fits then judge the best few sequences.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from pierburg_ros.identification.fit import fit
 from pierburg_ros.plant import Model
 
 SEGMENTS = 4
-"""Parts of the sequence, each of one recipe. Work: each more costs one linear estimate for every recipe and variant;
-not varied."""
+"""Number of parts of the sequence, each of one recipe. Work: each more costs one linear estimate for every recipe and
+variant; not varied."""
 SEEDS = 2
-"""Variants of each recipe that are tried. Work: the linear estimates grow with it; not varied."""
+"""Number of variants of each recipe that are tried. Work: the number of linear estimates grows with it; not varied."""
 FINALISTS = 2
-"""Sequences judged by real fits. Work: two fits each; not varied."""
+"""Number of sequences judged by real fits. Work: two fits each; not varied."""
 COARSER = 5
-"""Sample periods in one of the linear estimate, which has many sequences to try. Work: simulations and memory shrink
-by it; the noise is scaled for it."""
+"""Number of sample periods in one of the linear estimate's, which has many sequences to try. Work: simulations and
+memory shrink by it; the noise is scaled for it."""
 DETECTABLE = 6.0
 """Separation [noise deviations] from which a single recording settles the question beyond doubt. Derived: noise alone
-separates as far with 2e-9."""
+separates as far with a probability of 2e-9."""
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class Segment:
 
 @dataclass(frozen=True)
 class Design:
-    """The sequence found: its duty at `time` [s], its segments, and how far apart the explanations remain.
+    """The sequence found: its duty at `time` [s], its segments, and the separation of the explanations.
 
-    `left` [measured unit] is the RMS difference after refitting, the smaller of both ways round; `separation`
-    is the length of that difference in deviations of the sensor noise.
+    `left` [measured unit] is the RMS difference after refitting, the smaller of both ways round. `separation` is the
+    length of that difference in standard deviations of the sensor noise.
     """
 
     time: Signal
@@ -64,7 +64,7 @@ class Design:
 
     @property
     def settles(self) -> bool:
-        """Whether one such recording is expected to tell the explanations apart."""
+        """Whether one such recording is expected to distinguish the explanations."""
         return self.separation >= DETECTABLE
 
 
@@ -77,7 +77,7 @@ def discriminate(
     limit: float = 1.0,
     report: Callable[[str], None] = lambda line: None,
 ) -> Design:
-    """The best sequence of `duration` [s] with duty within +-`limit`, for sensor noise of `noise` [unit]."""
+    """The best sequence of `duration` [s] with duty within +-`limit`, for a sensor noise of `noise` [measured unit]."""
     time = np.arange(round(duration * rate)) / rate
     coarse = time[::COARSER]
     segments = [Segment(recipe, seed) for recipe in DUTY_RECIPES for seed in range(SEEDS)]
@@ -111,7 +111,7 @@ def _sequence(segments: tuple[Segment, ...], model: Model, time: Signal, limit: 
 
 
 def _ways(first: Model, second: Model) -> list[tuple[Model, Model]]:
-    """Who answers and who is fitted to that: both ways round, but never a model to its special case."""
+    """Pairs of a model that responds and one that is fitted: both ways round, but never a model to its special case."""
     ways = [(first, second), (second, first)]
     effects = [set(first.active_effects), set(second.active_effects)]
     if effects[0] < effects[1]:
@@ -120,7 +120,7 @@ def _ways(first: Model, second: Model) -> list[tuple[Model, Model]]:
 
 
 def linear_separation(first: Model, second: Model, time: Signal, duty: Signal, noise: float) -> float:
-    """Estimated separation [noise deviations]: what the slopes of the second's parameters cannot absorb."""
+    """Estimated separation [noise deviations]: the difference that the second's parameters cannot absorb linearly."""
     target = synthetic_recording(first, time, duty, noise=0.0)
     estimator = Estimator(data_of([target], second), second)
     origin = estimator.at(Explanation(refitted_names(second)))
@@ -134,7 +134,7 @@ def linear_separation(first: Model, second: Model, time: Signal, duty: Signal, n
 def judge(
     first: Model, second: Model, time: Signal, duty: Signal, segments: tuple[Segment, ...], noise: float
 ) -> Design:
-    """The design that `duty` makes, with each explanation really fitted to the other's answer."""
+    """The design that `duty` makes, with each explanation really fitted to the other's response."""
     left = min(
         fit(
             other,

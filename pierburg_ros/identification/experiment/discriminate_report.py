@@ -14,7 +14,7 @@ from pierburg_ros.recording.recording import UNITS
 
 
 def words(design: Design, names: tuple[str, str], unit: str, noise: float) -> str:
-    """What the sequence is, and how far apart it is expected to hold the two explanations."""
+    """The sequence in words, and the expected separation of the two explanations."""
     lines = [
         f"{names[0]} against {names[1]}, {design.time[-1] - design.time[0]:.0f} s,"
         f" duty {design.duty.min():.3f} to {design.duty.max():.3f}:"
@@ -37,7 +37,7 @@ def words(design: Design, names: tuple[str, str], unit: str, noise: float) -> st
 
 
 def write_picture(path: Path, design: Design, names: tuple[str, str], quantity: str) -> None:
-    """Write duty and both predicted answers as a PNG."""
+    """Write duty and both predicted responses as a PNG."""
     figure = Figure(figsize=(10, 6), layout="constrained")
     FigureCanvasAgg(figure)
     answer, difference, duty = figure.subplots(3, sharex=True, height_ratios=[4, 3, 2])

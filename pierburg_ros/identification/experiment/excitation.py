@@ -1,4 +1,4 @@
-"""Excitation recipes: the duty or setpoint sequences that show one thing or another about an actuator."""
+"""Excitation recipes: duty or setpoint sequences, each of which shows something else about an actuator."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Random = np.random.Generator
 
 @dataclass(frozen=True)
 class DutyRange:
-    """Duties at which a shaft coming from rest begins to move and reaches the end of its travel [1]."""
+    """Duties [1] at which a shaft coming from rest begins to move and reaches the end of its travel."""
 
     low: float
     high: float
 
     @staticmethod
     def of(model: Model) -> DutyRange:
-        """From the lumps of a spring-loaded model, or for a pendulum up to 60 degrees of deflection."""
+        """The range from the lumps of a spring-loaded model, or for a pendulum up to 60 degrees of deflection."""
         if model.actuator.drive != "voltage" or model.actuator.load == "none":
             raise InputError(
                 f"Actuator {model.actuator.name} has drive {model.actuator.drive} and load {model.actuator.load}; the "
@@ -42,7 +42,7 @@ class DutyRange:
         return DutyRange(low, low + value["gravity_torque"] * math.sin(math.radians(60.0)) * scale)
 
     def at(self, share: float | Signal) -> Signal:
-        """Duty at a `share` of the range; below 0 it runs to 0, at -1 [1]."""
+        """Duty [1] at a `share` of the range; for negative shares it falls from `low`, to 0 at -1."""
         share = np.asarray(share, dtype=float)
         inside = self.low + share * (self.high - self.low)
         return np.asarray(np.clip(np.where(share >= 0.0, inside, self.low * (1.0 + share)), -1.0, 1.0))
@@ -146,15 +146,15 @@ DUTY_RECIPES = {
 }
 SETPOINT_RECIPES = {function.__name__: function for function in (setpoints, square, sweep)}
 DURATION = {"staircase": 150.0, "steps": 36.0, "rich": 120.0, "stops": 30.0, "negative": 24.0}
-"""Duration [beats] of a recipe where none is given; 60 for the others. Derived: what the recipe takes once, 36 for
-three steps of 6 each way; the staircase has 2.5 a stair."""
+"""Duration [beats] of a recipe where none is given; 60 for the others. Derived: the time that the recipe takes once, 36
+for three steps of 6 each way; the staircase has 2.5 a stair."""
 BEAT = 10.473
-"""The time in which the recipes of duty count, in the actuator's own. Given: a second for the valve, in which the paper
+"""Time unit of the duty recipes, in the actuator's own time. Given: a second for the valve, in which the paper
 counts."""
 
 
 def usual_duration(name: str, model: Model) -> float:
-    """Duration [s] of recipe `name` where none is given; setpoints are the valve's."""
+    """Duration [s] of recipe `name` where none is given; setpoint recipes are for the valve."""
     beat = BEAT * model.scales.time if name in DUTY_RECIPES else 1.0
     return float(f"{DURATION.get(name, 60.0) * beat:.3g}")
 

@@ -1,4 +1,4 @@
-"""Explanations as a person names them: an effect's id, `nominal`, or a model file."""
+"""Explanations as the user names them: an effect's id, `nominal`, or a model file."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pierburg_ros.plant import Model, read_model
 
 NOMINAL = "nominal"
 DATES = frozenset(name for name, parameter in DECLARED.items() if parameter.dated)
-"""Parameters that say when something happened in one recording, not what the actuator is."""
+"""Parameters that give the time of an event in one recording, not a property of the actuator."""
 
 
 def explanation(name: str, base: Model) -> Model:
-    """The model that `name` means: `base`, `base` with an effect as one meets it, or a model file."""
+    """The model that `name` means: `base`, `base` with an effect of typical size, or a model file."""
     if name == NOMINAL:
         return base
     if name in EFFECT:
@@ -29,5 +29,5 @@ def explanation(name: str, base: Model) -> Model:
 
 
 def refitted_names(model: Model) -> tuple[str, ...]:
-    """What an explanation may adapt when it is fitted to another one's answer."""
+    """The parameters that an explanation may adapt when it is fitted to another one's response."""
     return tuple(name for name in free_names(model) if name not in DATES)

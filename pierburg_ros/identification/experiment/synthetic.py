@@ -13,7 +13,7 @@ from pierburg_ros.recording import Channel, Recording
 def synthetic_recording(
     model: Model, time: Signal, duty: Signal, noise: float = 0.003, seed: int = 0, name: str = "simulated"
 ) -> Recording:
-    """What a bench would record of `model` from rest at angle 0.
+    """The recording that a bench would make of `model` from rest at angle 0.
 
     `duty` holds from each `time` [s] to the next; `noise` is the sensor's standard deviation [measured unit].
     """

@@ -1,1 +1,1 @@
-"""The paper's own way: static characteristic, step response, its table held against itself."""
+"""The paper's own procedure: static characteristic, step response, its table checked against itself."""

@@ -1,4 +1,4 @@
-"""Stretches of constant duty in a recording, and where the shaft would settle in each."""
+"""Stretches of constant duty in a recording, and the angle at which the shaft would settle in each."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
 SHORTEST = 4.2
-"""A hold must last this long, in the actuator's own time, clear of the stops, to say where the shaft settles. Chosen:
-0.4 s for the valve, a third of its time constant, 1.15 s; not varied."""
+"""Shortest hold clear of the stops that says where the shaft settles, in the actuator's own time. Chosen: 0.4 s for the
+valve, a third of its time constant, 1.15 s; not varied."""
 STOP_MARGIN = 0.0127
-"""A shaft within this share of the travel from a stop may be held by it. Derived: 17 times a noise of 3 mV for the
-valve, so that a soft stop counts too."""
+"""Distance from a stop, as a share of the travel, within which it may hold the shaft. Derived: 17 times a noise of 3 mV
+for the valve, so that a soft stop counts too."""
 TRAVEL = 0.0013
-"""Share of the travel by which the shaft moves at least in a hold that says where it settles. Derived: 2 mrad of the
-valve, less than two standard deviations of a noise of 3 mV."""
+"""Smallest movement of the shaft, as a share of the travel, in a hold that says where it settles. Derived: 2 mrad of
+the valve, less than two standard deviations of a noise of 3 mV."""
 SETTLES = (0.21, 210.0)
 """Range of the time constant with which the shaft settles, in the actuator's own time. Chosen: 20 ms to 20 s for the
 valve, whose own is 1.15 s; not varied."""
@@ -44,10 +44,10 @@ class Hold:
 
 @dataclass(frozen=True)
 class Settled:
-    """Where the shaft settles at a `duty` [1] when opening (`direction` +1) or closing (-1): `angle` [rad].
+    """Angle [rad] at which the shaft settles at a `duty` [1] when opening (`direction` +1) or closing (-1).
 
-    `deviation` [rad] is its standard deviation at the time constant found, `doubt` [rad] how far it goes
-    when that moves by its own.
+    `deviation` [rad] is its standard deviation at the time constant found. `doubt` [rad] is its change when the time
+    constant moves by its own standard deviation.
     """
 
     duty: float
@@ -63,7 +63,7 @@ def angle_of(recording: Recording, actuator: Actuator) -> Signal:
 
 
 def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
-    """The stretches of constant duty, in order, each cut to its longest part clear of the stops."""
+    """The stretches of constant duty clear of the stops, in order, without those that are too short."""
     duty = recording.command.at(recording.time, before=0.0)
     angle = angle_of(recording, actuator)
     own = actuator.scales
@@ -83,7 +83,7 @@ def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
 
 
 def moving(found: list[Hold], noise: float, scales: Scales) -> list[Hold]:
-    """Those of `found` in which the shaft moves from the first fifth to the last; `noise` [rad]."""
+    """The holds of `found` in which the shaft moves from the first fifth to the last; `noise` [rad]."""
     kept = []
     for hold in found:
         fifth = max(hold.angle.size // 5, 2)
@@ -96,10 +96,10 @@ def moving(found: list[Hold], noise: float, scales: Scales) -> list[Hold]:
 
 
 def settled(found: list[Hold], scales: Scales) -> tuple[list[Settled], float]:
-    """Where the shaft settles in each of the `moving` holds, and the time constant [s] of all of them.
+    """Where the shaft settles in each of the `moving` holds, and the time constant [s] common to all of them.
 
-    While sliding, the angle approaches its end exponentially and never quite reaches it (equations (5) and
-    (6) without inductance and inertia); the exponential gives the end without waiting for it.
+    While sliding, the angle approaches its end exponentially and never quite reaches it (equations (5) and (6) without
+    inductance and inertia). The fitted exponential gives the end without waiting for it.
     """
 
     def misfit(logarithm: float) -> float:
@@ -134,7 +134,7 @@ def _gram(hold: Hold, constant: float) -> Signal:
 
 
 def _approach(hold: Hold, constant: float) -> tuple[float, float, float]:
-    """Final angle [rad], distance from it at the start [rad], squared misfit, of an exponential approach."""
+    """Final angle [rad], distance from it at the start [rad] and squared misfit [rad^2] of an exponential approach."""
     columns = np.column_stack([np.ones(hold.time.size), np.exp(-hold.before_motion / constant)])
     (end, distance), *_ = np.linalg.lstsq(columns, hold.angle, rcond=None)
     left = hold.angle - columns @ np.array([end, distance])

@@ -1,7 +1,7 @@
-"""The four numbers that sliding motion shows of a spring-loaded actuator, and how well a fit knows them.
+"""The four numbers of a spring-loaded actuator that sliding motion shows, and their intervals from a fit.
 
-time_constant w = gain duty - angle - preload_angle - friction_angle sign(w), equations (5) and (6) of
-the paper without inductance and inertia: everything that duty and angle alone can tell between the stops.
+time_constant w = gain duty - angle - preload_angle - friction_angle sign(w), equations (5) and (6) of the paper without
+inductance and inertia. Duty and angle alone determine nothing else between the stops.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DUTY_UNITS = {"D_c": "1", "D_pre": "1"}
 
 @dataclass(frozen=True)
 class Lump:
-    """A derived value with its 95 % interval, None where the recording does not fix it."""
+    """A derived value with its 95 % interval; the interval is None where the recording does not determine it."""
 
     value: float
     unit: str
@@ -53,7 +53,7 @@ def duties(model: Model) -> dict[str, float]:
 
 
 def fitted_lumps(fitted: Identified) -> dict[str, Lump]:
-    """The lumps of a fit; known even where the parameters behind them are tied."""
+    """The lumps of a fit; they are known even where the parameters behind them are tied."""
     return _derived(fitted, lumps, UNITS)
 
 
@@ -65,7 +65,7 @@ def fitted_duties(fitted: Identified) -> dict[str, Lump]:
 def _derived(
     fitted: Identified, quantities: Callable[[Model], dict[str, float]], units: dict[str, str]
 ) -> dict[str, Lump]:
-    """Positive `quantities` of the fitted model, their intervals by the slopes of their logarithms."""
+    """Positive `quantities` of the fitted model; their intervals come from the slopes of their logarithms."""
     values, slopes = quantities(fitted.model), _relative_slopes(fitted, quantities)
     _, lengths, directions = np.linalg.svd(fitted.slopes, full_matrices=False)
     unknown = directions[lengths <= RANK * lengths[0]]
@@ -79,7 +79,7 @@ def _derived(
 
 
 def _relative_slopes(fitted: Identified, quantities: Callable[[Model], dict[str, float]]) -> Signal:
-    """Derivative of the logarithm of each quantity to the coordinates, shape (quantities, names)."""
+    """Derivative of the logarithm of each quantity by the coordinates, shape (quantities, names)."""
     step, estimator = 1e-6, fitted.estimator
     coordinates = estimator.coordinates(fitted.fit.explanation)
 

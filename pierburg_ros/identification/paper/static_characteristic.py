@@ -14,10 +14,10 @@ from pierburg_ros.identification.paper.holds import Settled, angle_noise, holds,
 from pierburg_ros.recording import Recording
 
 SMALLEST = 1e-9
-"""Least standard deviation of a settled angle, as a share of the largest angle. Derived: a simulation without noise is
-rounded by no more."""
+"""Smallest standard deviation of a settled angle, as a share of the largest angle. Derived: a simulation without noise
+is rounded by no more."""
 FEWEST = 3
-"""Each branch needs this many settled angles. Derived: two fix a line, one more says whether it is one."""
+"""Number of settled angles that each branch needs. Derived: two fix a line, one more says whether it is one."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class StaticCharacteristic:
-    """angle = gain (duty - D_pre - direction D_c) between the stops; `points` are what it was fitted to.
+    """angle = gain (duty - D_pre - direction D_c) between the stops; it was fitted to `points`.
 
     `gain` [rad], `coulomb_duty` D_c [1], `preload_duty` D_pre [1], `scatter` of the points [rad], and the
     `time_constant` [s] with which the shaft approaches them.
@@ -44,12 +44,12 @@ class StaticCharacteristic:
     time_constant: float
 
     def angle(self, duty: float, direction: int) -> float:
-        """Settled angle [rad] at `duty` [1] on the branch of `direction`, beyond the stops too."""
+        """Settled angle [rad] at `duty` [1] on the branch of `direction`, also beyond the stops."""
         return self.gain.value * (duty - self.preload_duty.value - direction * self.coulomb_duty.value)
 
 
 def static_characteristic(recordings: Sequence[Recording], actuator: Actuator) -> StaticCharacteristic | None:
-    """The static characteristic from all stretches of constant duty; None where a branch has too few."""
+    """The static characteristic from all stretches of constant duty; None without a spring or with too few angles."""
     scales = actuator.scales
     found = [
         hold

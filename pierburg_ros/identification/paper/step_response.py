@@ -1,7 +1,7 @@
 """The paper's fit of steps from rest, equations (10) to (12), and the parameters that follow from it.
 
-Equation (11) is used with exp(-p t): with the printed exp(p t) nothing would decay while p1 p2 = omega_n^2
-and p1 + p2 = 2 xi omega_n hold, which need positive poles (section 1 of docs/contract.md).
+Equation (11) is used with exp(-p t). With the printed exp(p t) nothing would decay, since p1 p2 = omega_n^2 and p1 + p2
+= 2 xi omega_n need positive poles (section 1 of docs/contract.md).
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pierburg_ros.recording import Recording
 
 FASTEST = 1e5
 """Largest pole that is tried, over the actuator's own time. Derived: 1e6 rad/s for the valve, 15 times the fast pole of
-Table I, 66 krad/s, and 2,000 samples at 500 Hz in one: no recording tells more."""
+Table I, 66 krad/s. One sample at 500 Hz is 2,000 of its time constants: no recording shows more."""
 
 
 REST = 0.21
-"""How long before a step the shaft is looked at, in the actuator's own time. Chosen: 20 ms for the valve, ten samples;
-not varied."""
+"""Time before a step in which the shaft must rest, in the actuator's own time. Chosen: 20 ms for the valve, ten
+samples; not varied."""
 SHORTEST = 5.2
 """Length of the shortest step that is fitted, in the actuator's own time. Chosen: half a second for the valve, less
 than half of its time constant; not varied."""
@@ -44,8 +44,8 @@ class Step:
 class StepResponse:
     """Fitted `gain` K [rad/V] and `slow_pole` p1 [rad/s] with their standard deviations.
 
-    `fast_pole_bound` [rad/s]: the fast pole is above it with 95 % confidence; no upper bound exists, so
-    neither J_t nor omega_n and xi follow from the steps. `rmse` [rad] over `steps` steps.
+    `fast_pole_bound` [rad/s]: the fast pole is above it with 95 % confidence. No upper bound exists, so neither J_t nor
+    omega_n and xi follow from the steps. `rmse` [rad] is over all `steps`.
     """
 
     gain: float
@@ -58,12 +58,12 @@ class StepResponse:
 
 
 def second_order(time: Signal, slow: float, fast: float) -> Signal:
-    """Equation (11) for a unit step and unit gain, poles `slow` and `fast` [rad/s] both positive."""
+    """Equation (11) for a unit step and unit gain, with poles `slow` and `fast` [rad/s], both positive."""
     return np.asarray(1.0 + fast / (slow - fast) * np.exp(-slow * time) - slow / (slow - fast) * np.exp(-fast * time))
 
 
 def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
-    """The upward steps of duty that find the shaft on the closed stop, each until the duty changes again."""
+    """The steps of duty that open the shaft from rest on the closed stop, each until the duty changes again."""
     angle, own = angle_of(recording, actuator), actuator.scales
     margin, found = STOP_MARGIN * own.angle, []
     times = [*recording.command.time, np.nextafter(recording.time[-1], np.inf)]
@@ -83,7 +83,7 @@ def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
 def step_response(
     recordings: Sequence[Recording], actuator: Actuator, static: StaticCharacteristic | None, supply: float
 ) -> StepResponse | None:
-    """The fit of equation (12) over all steps from rest, given `supply` voltage [V]; None without steps."""
+    """The fit of equation (12) to all steps from rest, with the `supply` voltage [V] given; None without steps."""
     found = [step for recording in recordings for step in steps_from_rest(recording, actuator)]
     if not found or static is None:
         return None

@@ -1,4 +1,4 @@
-"""What Table I of the paper implies about itself, every number computed from its rows."""
+"""What the rows of the paper's Table I imply about each other; every number is computed from its rows."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ PRINTED = {"gain": 0.4363, "damping_ratio": 137.68, "natural_frequency": 240.16}
 SMALLEST_MOVING_STEP = 0.20
 """Duty of the smallest step, which moves the shaft. Given: Fig. 4 of the paper."""
 LARGEST_FREE_STEP = 0.24
-"""Duty of the largest step, which as far as its picture shows stays off the stop. Given: Fig. 4 of the paper."""
+"""Duty of the largest step, which stays off the stop as far as its picture shows. Given: Fig. 4 of the paper."""
 SAMPLE_PERIOD = 0.002
 """Sample period of the recordings [s]. Given: 500 Hz, the rate of plant and controller."""
 
 
 @dataclass(frozen=True)
 class Derived:
-    """What the primitive rows (R, k_g, k_m, k_s, J_t, preload, friction) imply.
+    """The numbers that the primitive rows (R, k_g, k_m, k_s, J_t, preload, friction) imply.
 
-    K [rad/V], xi, omega_n [rad/s], the poles [rad/s], `inertia_time` J_t / b [s], armature voltages [V] that
-    overcome friction and preload, and the supply voltages [V] between which the steps of Fig. 4 make sense.
+    K [rad/V], xi, omega_n [rad/s], the poles [rad/s], `inertia_time` J_t / b [s], armature voltages [V] that overcome
+    friction and preload, and the supply voltages [V] between which the steps of Fig. 4 make sense.
     """
 
     gain: float
@@ -39,7 +39,7 @@ class Derived:
 
 @dataclass(frozen=True)
 class Check:
-    """One statement of the audit: what is printed, what follows from other rows, what to make of it."""
+    """One statement of the audit: the printed value, the value that follows from other rows, and the verdict."""
 
     row: str
     printed: str
