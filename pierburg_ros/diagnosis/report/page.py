@@ -28,7 +28,7 @@ VERDICTS = {
     "consistent": "the model as described explains the recordings down to their noise",
     "parameter_drift": "the model's structure is right, its parameters have changed",
     "missing_physics": "the model lacks the effects named here, and with them it is right",
-    "unexplained": "something is left that no effect of the catalogue removes",
+    "unexplained": "an error remains that is not explained",
 }
 """The meaning of each verdict."""
 NOTHING = "nothing is concluded: the signals are not what they are read as"

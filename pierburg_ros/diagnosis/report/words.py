@@ -82,7 +82,7 @@ def by_weight(weight: Weight) -> str:
     if weight.by_rule is not None:
         return (
             "The controller that made the input shows it: the input follows from setpoint and angle by one rule. With "
-            f"the effect {100.0 * weight.by_rule:.1f} % of the squared error of that rule disappear."
+            f"the effect {100.0 * weight.by_rule:.1f} % of the squared error of that rule disappears."
         )
     what = "any effect" if weight.bare else "it"
     seen = "" if weight.unseen is None else f" On samples that no fit has seen it gains {weight.unseen:.3g}."
@@ -157,7 +157,7 @@ def summary(
     if verdict == "missing_physics":
         return f"The model lacks {listed}. {named}{also} {errors}"
     helped = f" The recordings support {listed} beside it. {named}{also}" if effects else ""
-    error = "An error remains so far." if stopped else "An error remains that no effect of the catalogue explains."
+    error = "An error remains so far." if stopped else "An error remains that is not explained."
     return f"{error}{helped} {errors}"
 
 
