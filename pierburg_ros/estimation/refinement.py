@@ -90,15 +90,15 @@ def _evolved(estimator: Estimator, fit: Fit) -> Fit:
     deviations. Slopes over finer differences, which the last descent may have left, are those of a single step.
     """
     explanation, coordinates = fit.explanation, estimator.coordinates(fit.explanation)
-    slopes = estimator.restated(fit).solution.jacobian
+    begin = estimator.restated(fit).solution
     usual = np.array([1.0 if "." in name else KNOWN for name in explanation.names])
-    spread = np.linalg.inv(slopes.T @ slopes / fit.chi2 + np.diag(usual**-2.0))
+    spread = np.linalg.inv(begin.jacobian.T @ begin.jacobian / fit.chi2 + np.diag(usual**-2.0))
 
     def cost(point: Signal) -> float:
         return estimator.chi2_at(explanation, coordinates.values(point))
 
     points = POINTS * len(explanation.names)
-    lowest = evolved(cost, fit.solution.point, spread, coordinates.bounds, points, GENERATIONS, estimator.over)
+    lowest = evolved(cost, begin.point, spread, coordinates.bounds, points, GENERATIONS, estimator.over)
     return min(fit, estimator.fit(explanation, coordinates.values(lowest)), key=lambda each: each.chi2)
 
 
