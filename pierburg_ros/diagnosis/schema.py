@@ -49,6 +49,17 @@ class Estimate(Part):
     """Whether these recordings determine the value."""
 
 
+class Evidence(Part):
+    """What makes an effect more or less probable beside a remainder (`search/belief.py`)."""
+
+    carried: Number
+    """Share, 0 to 1, of the evidence against the model without any effect."""
+    explains: Number
+    """Share, 0 to 1, in the mean square of its own signal and the remainder together."""
+    apart: Number
+    """By how much the best replacement falls short of it, as a share of its gain; 0 if that gains as much."""
+
+
 class Effect(Part):
     """A catalogue effect that the recordings need."""
 
@@ -64,6 +75,23 @@ class Effect(Part):
     """Of the mismatch, what it explains beside the others, 0 to 1; null where there is no mismatch."""
     share_alone: Number = None
     """Of the mismatch, what it explains without the others, 0 to 1."""
+    evidence: Evidence | None = None
+    """Only beside a remainder of a single recording."""
+    explanation: str
+    """Why, in words, with numbers."""
+
+
+class Doubted(Part):
+    """An effect that gains something beside a remainder, but is not probable enough to be named."""
+
+    id: str
+    """Name in the catalogue."""
+    confidence: Number
+    """0 to 1: how probable the effect is; named ones have at least 0.5."""
+    indistinguishable_from: list[Tie] = []
+    """Alternatives that fit as well, each a list of effect ids and parameter names."""
+    evidence: Evidence | None = None
+    """None for a play, which is read from reversals and has no replacement."""
     explanation: str
     """Why, in words, with numbers."""
 
@@ -325,6 +353,8 @@ class Diagnosis(Part):
     stopped: bool = False
     """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
     effects: list[Effect] = []
+    doubted: list[Doubted] = []
+    """Only with the verdict "unexplained", from a single recording."""
     parameters: dict[str, BaseParameter] = {}
     """Those of the actuator, and of effects that it always has as `effect.parameter`."""
     changes: list[Change] = []

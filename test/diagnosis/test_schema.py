@@ -21,8 +21,8 @@ QUALITY = DataQuality(rate=500.0, jitter=0.0, gaps=0, saturated_share=0.0, stops
 NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.inf)
 CONTRACT = {
     "schema", "recordings", "quantity", "unit", "input", "motion", "verdict", "summary", "stopped", "effects",
-    "parameters", "changes", "locations", "regimes", "simulation", "fit", "candidates", "not_testable", "cannot_act",
-    "ruled_out", "remaining", "excluded", "residual_torque", "data_quality", "input_faults", "advice",
+    "doubted", "parameters", "changes", "locations", "regimes", "simulation", "fit", "candidates", "not_testable",
+    "cannot_act", "ruled_out", "remaining", "excluded", "residual_torque", "data_quality", "input_faults", "advice",
 }  # fmt: skip
 
 

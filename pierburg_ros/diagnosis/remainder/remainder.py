@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.confirmed import confirmed
@@ -27,7 +27,8 @@ class Remainder:
     """The model below the remainder, with the intervals of its values by dotted name.
 
     `left_out` and `weights` say why each of its effects is believed, as in `Standing`. `shape` is the rest as a torque
-    over angle and velocity; None where unseen data do not confirm one.
+    over angle and velocity; None where unseen data do not confirm one. `doubted` are the effects that are not probable
+    enough to be named.
     """
 
     base: Fit
@@ -35,6 +36,7 @@ class Remainder:
     left_out: Mapping[str, LeftOut]
     weights: Mapping[str, Weight]
     shape: Shape | None
+    doubted: Mapping[str, Weight] = field(default_factory=dict)
 
 
 def unexamined(found: Found, named: Standing | None = None) -> Remainder:
@@ -45,7 +47,7 @@ def unexamined(found: Found, named: Standing | None = None) -> Remainder:
     named = named or Standing(found.estimator)
     base = found.estimator.restated(named.base or _below(found, None))
     base = base if named.base else replace(base, explanation=Explanation())
-    return Remainder(base, dict(named.told), named.left_out, named.weights, None)
+    return Remainder(base, dict(named.told), named.left_out, named.weights, None, named.doubted)
 
 
 def unnamed(found: Found, jobs: int | None, deadline: Deadline) -> Remainder:
@@ -76,7 +78,7 @@ def remainder(
         base = named.base or _below(found, shape if stands else None)
         known = known if named.base else estimates(named.estimator, base, pool.map)
     base = found.estimator.restated(base)
-    return Remainder(base, known, named.left_out, named.weights, shape if stands else None)
+    return Remainder(base, known, named.left_out, named.weights, shape if stands else None, named.doubted)
 
 
 def certain(named: Standing, pool: Executor) -> tuple[Standing, dict[str, Estimate]]:

@@ -38,7 +38,8 @@ class Standing:
     """The model `base` that is accepted beside a remainder, None where no quantity is; `estimator` has fitted it.
 
     `left_out` and `weights` say why each of its effects is believed, by id: the evidence of recordings left out, or its
-    weight beside the remainder. `told` are values that need no fit, with their intervals, by dotted name.
+    weight beside the remainder. `told` are values that need no fit, with their intervals, by dotted name. `doubted` are
+    the effects that are not probable enough to be named, by id.
     """
 
     estimator: Estimator
@@ -46,6 +47,7 @@ class Standing:
     left_out: Mapping[str, LeftOut] = field(default_factory=dict)
     weights: Mapping[str, Weight] = field(default_factory=dict)
     told: Mapping[str, Estimate] = field(default_factory=dict)
+    doubted: Mapping[str, Weight] = field(default_factory=dict)
 
 
 def standing(
@@ -76,14 +78,19 @@ def standing(
     stood = _vouched_for(stood, found, told) if told else stood
     if stood is None:
         return Standing(estimator)
+    weights = _by_effect(stood)
+    doubted = {effect: weight for effect, weight in stood.doubted.items() if effect not in weights}
+    if not stood.weights:
+        return Standing(estimator, doubted=doubted)
     fitted = Estimator(data, stood.nominal, discrepancy=stood.scored.discrepancy)
-    base, weights = fitted.restated(stood.scored.fit), _by_effect(stood)
+    base = fitted.restated(stood.scored.fit)
     if vouched is not None:
         return Standing(fitted, base, dict.fromkeys(weights, vouched))
-    return Standing(fitted, base, {}, weights, told.estimates if told and told.variant in stood.weights else {})
+    known = told.estimates if told and told.variant in stood.weights else {}
+    return Standing(fitted, base, {}, weights, known, doubted)
 
 
-def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Supported | None:
+def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Supported:
     """What unseen samples of a single recording confirm and nothing simpler can replace, and the play of its sensor.
 
     A play is read from the samples themselves: it needs none of the other quantities.
@@ -99,9 +106,8 @@ def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadlin
     with workers(jobs, deadline) as pool:
         named = told_apart(beside.confirmed, Weighing(data, nominal, pool), progress)
     if _doubtful(named, found) or _outdone(named, found):
-        named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {})
-    both = with_play(named, beside.reached.fit, data, nominal)
-    return both if both.weights else None
+        named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {}, named.doubted)
+    return with_play(named, beside.reached.fit, data, nominal)
 
 
 def _outdone(stood: Supported, found: Found) -> bool:
@@ -169,7 +175,7 @@ def _vouched_for(stood: Supported | None, found: Found, told: Witness) -> Suppor
         instead=tuple((name,) for name in told.as_well),
         by_rule=told.share,
     )
-    return Supported(nominal, beside, {**before.weights, told.variant: weight})
+    return Supported(nominal, beside, {**before.weights, told.variant: weight}, before.doubted)
 
 
 def _by_effect(stood: Supported) -> dict[str, Weight]:

@@ -26,9 +26,11 @@ from pierburg_ros.diagnosis.schema import (
     CannotAct,
     Change,
     Diagnosis,
+    Doubted,
     Effect,
     Errors,
     Estimate,
+    Evidence,
     Excluded,
     FitQuality,
     Location,
@@ -41,6 +43,7 @@ from pierburg_ros.diagnosis.schema import (
 )
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
+from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
@@ -66,6 +69,8 @@ def document(
     fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(marks)
     short = quality.limits_of(data.runs, actuator, data.noise)
     text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
+    unsure = doubted(conclusion)
+    text = words.unsure({each.id: each.confidence or 0.0 for each in unsure}, text)
     text = words.needless(found.needless if conclusion.verdict == "unexplained" else (), text)
     text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
     places, ranges = located(data, conclusion)
@@ -80,6 +85,7 @@ def document(
         summary=words.cautioned(short, text),
         stopped=stopped,
         effects=named,
+        doubted=unsure,
         parameters=parameters_found,
         changes=changed,
         locations=places,
@@ -123,12 +129,34 @@ def effects(conclusion: Conclusion, parts: Shares) -> list[Effect]:
                 indistinguishable_from=ties,
                 share=share.beside if share else None,
                 share_alone=share.alone if share else None,
+                evidence=_evidence(support.weight),
                 explanation=words.effect_explanation(
                     variant.effect, parameters, ties, words.reason(support, conclusion.final.model.actuator.unit)
                 ),
             )
         )
     return found
+
+
+def doubted(conclusion: Conclusion) -> list[Doubted]:
+    """The effects that are not probable enough to be named beside a remainder, the most probable first."""
+    found = [
+        Doubted(
+            id=effect,
+            confidence=weight.confidence,
+            indistinguishable_from=[list(names) for names in weight.instead],
+            evidence=_evidence(weight),
+            explanation=words.by_weight(weight),
+        )
+        for effect, weight in conclusion.doubted.items()
+    ]
+    return sorted(found, key=lambda each: -(each.confidence or 0.0))
+
+
+def _evidence(weight: Weight | None) -> Evidence | None:
+    if weight is None or weight.apart is None:
+        return None
+    return Evidence(carried=weight.carried, explains=weight.explained, apart=weight.apart)
 
 
 def _estimate(conclusion: Conclusion, name: str, value: float, unit: str) -> Estimate:

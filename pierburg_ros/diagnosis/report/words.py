@@ -90,10 +90,13 @@ def by_weight(weight: Weight) -> str:
     if weight.explains is not None:
         times = math.sqrt(weight.explains / max(1.0 - weight.explains, 1e-6))
         share = f" It moves the signal by {times:.2g} times the remaining error."
+    nearest = ""
+    if weight.apart is not None:
+        nearest = f" The best replacement gains {100.0 * (1.0 - weight.apart):.0f} % as much."
     return (
         f"It explains {100.0 * weight.carried:.0f} % of the evidence against the model without {what}: "
         f"{weight.gain:.3g} in -2 log likelihood, and {weight.left:.3g} is left. The remaining error counts as one "
-        f"that varies slowly, not as noise.{seen}{share}"
+        f"that varies slowly, not as noise.{seen}{share}{nearest}"
     )
 
 
@@ -159,6 +162,12 @@ def summary(
     helped = f" The recordings support {listed} beside it. {named}{also}" if effects else ""
     error = "An error remains so far." if stopped else "An error remains that is not explained."
     return f"{error}{helped} {errors}"
+
+
+def unsure(doubted: Mapping[str, float], text: str) -> str:
+    """The summary, with the probability of each effect that is not probable enough to be named, by id."""
+    listed = ", ".join(f"{numbers.words(name)} ({numbers.percent(each)})" for name, each in doubted.items())
+    return f"{text} Not sure enough to be named: {listed}." if listed else text
 
 
 def needless(effects: Sequence[str], text: str) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from pierburg_ros.diagnosis.search.belief import PROBABLE, of_drift, of_effect
 from pierburg_ros.diagnosis.search.moved import moved
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, scored, settled, strange, unseen
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
@@ -18,45 +19,28 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.refinement import lowered
 from pierburg_ros.plant import Model
 
-CONFIRMED = 0.5
-"""Share of a quantity's gain on the training samples, scaled to the number of validation samples, that these must show
-as well. Derived: halfway between a quantity that fits the training samples alone (none of the gain) and one that is
-there (all of it)."""
-EXPLAINS = 0.55
-"""Least share of a quantity in the mean square of its own signal and the remainder together (`moved.py`). Measured: the
-n = 61 trials have effects beside a remainder, a remainder alone, or something outside the catalogue. Of the 29 right
-names that carry their part and are confirmed, 24 reach 0.65 or more, and 0.55 in intermediate explanations. The other
-five reach 0.4 or less. Six of 20 wrong ones stay below."""
-CARRIES = 1.0 / 3.0
-"""Least share of the evidence against the model without any effect that an effect has to carry. Measured: in the same n
-= 61 trials, 31 of 34 right names that are confirmed reach 0.34 or more, and 45 of 61 wrong ones stay below a third."""
-ALONE = 0.8
-"""Confidence in a name beside a remainder if nothing else fits almost as well. Measured: Laplace's rule of succession,
-since all of n = 3 such names were right for effects put into real recordings. With one to three rivals, three of six
-were right: about the share of one among equals."""
-
 
 @dataclass(frozen=True)
 class Weight:
     """Evidence for a quantity, in -2 log likelihood: `gain` is the cost of leaving it out, `left` the misfit with it.
 
     `left` is how much less likely the residual is than white noise of the sensor's size. `unseen` is the cost of
-    leaving the quantity out on the validation samples, None if these were not evaluated in this way. A quantity that is
-    there has the `expected` cost on them: its gain by their number over that of the training samples. `explains` is its
+    leaving the quantity out on the validation samples, None if these were not evaluated in this way. `explains` is its
     share in the mean square of its own signal and the remainder, None if that was not evaluated. `plausible`: its
     values are such as 95 of 100 actuators have. `instead` is what gains almost as much in its place: an effect, or one
-    or two drifting parameters. `by_rule` is the share of the error of a controller's rule that the quantity removes,
-    None if no controller confirms it (`witness.py`). `bare` is the misfit if none of several effects acts and the
-    drifts stay as they are, 0 unless there are several.
+    or two drifting parameters. `apart` is by how much the best replacement falls short of it, as a share of its gain:
+    0 if it gains as much, 1 if it gains nothing; None if no replacement was looked for. `by_rule` is the share of the
+    error of a controller's rule that the quantity removes, None if no controller confirms it (`witness.py`). `bare` is
+    the misfit if none of several effects acts and the drifts stay as they are, 0 unless there are several.
     """
 
     gain: float
     left: float
     unseen: float | None = None
-    expected: float = 0.0
     explains: float | None = None
     plausible: bool = True
     instead: tuple[tuple[str, ...], ...] = ()
+    apart: float | None = None
     by_rule: float | None = None
     bare: float = 0.0
 
@@ -67,21 +51,24 @@ class Weight:
         return gain / max(gain + left, self.bare, 1e-9)
 
     @property
-    def confirmed(self) -> bool:
-        """Whether samples that no fit has used confirm the quantity."""
-        return self.unseen is None or self.unseen >= CONFIRMED * self.expected
+    def explained(self) -> float:
+        """What it `explains`, all if that was not evaluated."""
+        return 1.0 if self.explains is None else self.explains
 
     @property
-    def believed(self) -> bool:
-        """Whether it explains enough, with values that an actuator has, and unseen samples confirm it."""
-        return (self.explains is None or self.explains >= EXPLAINS) and self.plausible and self.confirmed
+    def confirmed(self) -> bool:
+        """Whether samples that no fit has used are more likely with the quantity than without it."""
+        return self.unseen is None or self.unseen > 0.0
 
     @property
     def confidence(self) -> float:
-        """Confidence in the quantity, 0 to 1: ties share it equally; without unseen samples it is the share carried."""
+        """Confidence in an effect, 0 to 1: its probability, or where nothing could replace it the share it accounts
+        for."""
         if self.by_rule is not None:
             return self.by_rule / (1 + len(self.instead))
-        return self.carried if self.unseen is None else ALONE / (1 + len(self.instead))
+        if self.explains is None or self.apart is None:
+            return self.carried
+        return of_effect(self.carried, self.explains, self.apart)
 
 
 @dataclass(frozen=True)
@@ -89,12 +76,14 @@ class Supported:
     """An explanation with its likelihood, and the weight of each of its quantities.
 
     `nominal` is the model that it changes: the nominal one. For a shaft that goes round, it also has the lesser orders
-    of the torque over a turn.
+    of the torque over a turn. `doubted` are effects that were left out because they are not probable, by id, with their
+    weights.
     """
 
     nominal: Model
     scored: Scored
     weights: Mapping[Quantity, Weight]
+    doubted: Mapping[str, Weight] = field(default_factory=dict)
 
 
 def idle(quantity: Quantity, weight: Weight) -> bool:
@@ -103,14 +92,16 @@ def idle(quantity: Quantity, weight: Weight) -> bool:
 
 
 def unconfirmed(quantity: Quantity, weight: Weight) -> bool:
-    """Whether a quantity gains or explains too little, is not plausible, or unseen samples do not confirm it.
+    """Whether a quantity gains too little, is not plausible or probable, or unseen samples do not confirm it.
 
-    An effect that acts only once is not confirmed either. A parameter may drift a little beside an effect, but an
-    effect has to carry its part.
+    An effect that acts only once is not confirmed either. An effect counts as if nothing could replace it: what could
+    is looked for later (`supported.py`).
     """
-    if idle(quantity, weight) or not weight.believed:
+    if idle(quantity, weight) or not weight.plausible or not weight.confirmed:
         return True
-    return isinstance(quantity, Variant) and (bool(moments(quantity)) or weight.carried < CARRIES)
+    if isinstance(quantity, Variant):
+        return bool(moments(quantity)) or of_effect(weight.carried, weight.explained) < PROBABLE
+    return of_drift(weight.carried, weight.explained) < PROBABLE
 
 
 class Weighing:
@@ -136,33 +127,40 @@ class Weighing:
         return self.thinned(self.weighed(reached), idle)
 
     def heard(self, told: Supported) -> Supported:
-        """The part of an explanation that unseen samples confirm, weighed.
+        """The part of an explanation that unseen samples confirm, weighed."""
+        while (out := self._weakest(told, unconfirmed)) is not None:
+            told = self.given_up(told, out)
+        return told
+
+    def given_up(self, told: Supported, quantity: Quantity) -> Supported:
+        """The explanation without a quantity, weighed.
 
         The last effect is given up only after a search for other local minima, if its cost has many.
         """
-        while (rest := self._rest(told, unconfirmed)) is not None:
-            reached, own = told.scored, told.scored.fit.explanation
-            if len(own.variants) == 1 and jumps(own) and own not in self._searched:
-                self._searched.add(own)
-                estimator = estimator_beside(self.data, self.nominal, reached.discrepancy)
-                rest = self.settled(lowered(estimator, estimator.restated(reached.fit)))
-            told = self.weighed(rest)
-        return told
+        reached, own = told.scored, told.scored.fit.explanation
+        if quantity in own.variants and len(own.variants) == 1 and jumps(own) and own not in self._searched:
+            self._searched.add(own)
+            estimator = estimator_beside(self.data, self.nominal, reached.discrepancy)
+            return self.weighed(self.settled(lowered(estimator, estimator.restated(reached.fit))))
+        return self.weighed(self.lacking(reached, quantity))
 
     def thinned(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
         """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""
-        while (rest := self._rest(told, out)) is not None:
-            told = self.weighed(rest)
+        while (weakest := self._weakest(told, out)) is not None:
+            told = self.weighed(self.lacking(told.scored, weakest))
         return told
 
-    def _rest(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Scored | None:
-        """The explanation without the weakest of the quantities that are `out`, None if there is none.
+    def _weakest(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Quantity | None:
+        """The weakest of the quantities that are `out`, None if there is none.
 
         A quantity stays if the others make no model without it.
         """
         leaving = {quantity: each.gain for quantity, each in told.weights.items() if out(quantity, each)}
-        rests = (self.lacking(told.scored, quantity) for quantity in sorted(leaving, key=lambda one: leaving[one]))
-        return next((rest for rest in rests if rest.fit.explanation != told.scored.fit.explanation), None)
+        return next((one for one in sorted(leaving, key=lambda one: leaving[one]) if self.removable(told, one)), None)
+
+    def removable(self, told: Supported, quantity: Quantity) -> bool:
+        """Whether the other quantities make a model without this one."""
+        return self.lacking(told.scored, quantity).fit.explanation != told.scored.fit.explanation
 
     def weighed(self, reached: Scored) -> Supported:
         """The explanation with a weight for each quantity, from a fit of the others with their own discrepancy."""
@@ -171,7 +169,6 @@ class Weighing:
         several = len(explanation.variants) > 1
         bare = self._without(best, *explanation.variants).left if several else 0.0
         shares = moved(self.data, self.nominal, best.fit)
-        expected = float(self.data.validation.sum() / self.data.train.sum())
 
         def weight(quantity: Quantity) -> Weight:
             rest, lost = self._lacking(best, quantity)
@@ -181,7 +178,6 @@ class Weighing:
                 gain,
                 best.left,
                 unseen=lost - validation,
-                expected=expected * gain,
                 explains=shares[quantity],
                 plausible=not own & odd,
                 bare=bare,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.remainder.remainder import Remainder
@@ -47,7 +47,8 @@ class Conclusion:
     """The chosen fit with its alternatives, and the nominal and recalibrated fits it is compared with.
 
     `final` is the chosen explanation with its last values, `estimates` holds their intervals, and `supports` goes by
-    the ids of its effects. `shape` is the rest as a torque, if that is confirmed.
+    the ids of its effects. `doubted` are the effects that are not probable enough to be named beside a
+    remainder. `shape` is the rest as a torque, if that is confirmed.
     """
 
     verdict: Verdict
@@ -59,6 +60,7 @@ class Conclusion:
     estimates: dict[str, Estimate]
     supports: Mapping[str, Support]
     shape: Shape | None = None
+    doubted: Mapping[str, Weight] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -77,7 +79,9 @@ def conclude(found: Found, rest: Remainder | None = None) -> Conclusion:
             base, supports[ROUNDING.id] = _rounded(base, step), Support(1.0)
             shape = shape and replace(shape, model=shape.model.with_values({STEP: step}))
         ties = _tied(base, rest.weights)
-        return Conclusion(verdict, base, base, nominal, found.recalibrated, ties, rest.estimates, supports, shape)
+        return Conclusion(
+            verdict, base, base, nominal, found.recalibrated, ties, rest.estimates, supports, shape, rest.doubted
+        )
     chosen, final = found.chosen, found.final
     supports = {variant.effect: _by_evidence(found, variant) for variant in chosen.explanation.variants}
     if step := found.data.step:

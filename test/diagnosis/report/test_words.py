@@ -6,7 +6,7 @@ from support.recordings import NOMINAL
 
 from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
-from pierburg_ros.diagnosis.report.words import advice, cautioned, needless, reason, summary
+from pierburg_ros.diagnosis.report.words import advice, cautioned, needless, reason, summary, unsure
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
@@ -38,8 +38,8 @@ TIED = Effect(
         (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
         (Support(0.8, weight=Weight(800.0, 200.0)), "explains 80 % of the evidence against the model without it"),
         (
-            Support(0.8, weight=Weight(800.0, 200.0, 90.0, 99.0, 0.65)),
-            "gains 90. It moves the signal by 1.4 times the remaining error",
+            Support(0.8, weight=Weight(800.0, 200.0, 90.0, 0.65, apart=0.25)),
+            "gains 90. It moves the signal by 1.4 times the remaining error. The best replacement gains 75 % as much.",
         ),
     ],
     ids=[
@@ -54,6 +54,12 @@ TIED = Effect(
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
     assert words in reason(support, "V")
+
+
+def test_what_is_not_sure_enough_is_told_with_its_probability() -> None:
+    told = unsure({"backlash": 0.43, "sensor_lag": 0.081}, "An error remains.")
+    assert told == "An error remains. Not sure enough to be named: backlash (43 %), sensor lag (8.1 %)."
+    assert unsure({}, "An error remains.") == "An error remains."
 
 
 def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -> None:

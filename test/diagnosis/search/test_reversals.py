@@ -66,3 +66,14 @@ def test_a_play_is_named_only_where_the_likeliest_model_does_not_take_it_away():
     for reached, has in ((bare, True), (searched, True), (taken, False)):
         found = with_play(named, reached, data, NOMINAL)
         assert [key.effect for key in found.weights if isinstance(key, Variant)] == ["sensor_hysteresis"] * has
+
+
+def test_a_play_that_is_not_probable_is_doubted(monkeypatch):
+    data = measured(WIDTH)
+    bare = Estimator(data, NOMINAL).at(Explanation())
+    play = play_at_reversals(data, bare)
+    weak = replace(play, left=3.0 * play.gain)
+    monkeypatch.setattr("pierburg_ros.diagnosis.search.supported.play_at_reversals", lambda *_: weak)
+    found = with_play(Supported(NOMINAL, scored(data, bare), {}), bare, data, NOMINAL)
+    assert not found.weights
+    assert found.doubted["sensor_hysteresis"].confidence == pytest.approx(0.25)

@@ -10,10 +10,11 @@ from support.recordings import NOISE, NOMINAL, data_on, disturbed, recording
 from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.diagnosis.search import supported as module
 from pierburg_ros.diagnosis.search import weighing
+from pierburg_ros.diagnosis.search.belief import PROBABLE
 from pierburg_ros.diagnosis.search.growing import FOLLOWED
 from pierburg_ros.diagnosis.search.scored import scored, settled, unseen
 from pierburg_ros.diagnosis.search.supported import Beside, confirmed_beside, likelier, supported, told_apart
-from pierburg_ros.diagnosis.search.weighing import CONFIRMED, Supported, Weighing, Weight
+from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, unconfirmed
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -167,28 +168,37 @@ def test_a_drift_that_may_stand_in_for_effects_takes_none_of_their_evidence():
 
 
 def test_a_quantity_is_confirmed_by_what_unseen_samples_gain():
-    there, bent = (Weight(300.0, 100.0, unseen, 50.0) for unseen in (45.0, 5.0))
+    there, bent = (Weight(300.0, 100.0, unseen, 0.9) for unseen in (45.0, -5.0))
     assert there.confirmed and not bent.confirmed
-    assert there.confidence == 3.0 * replace(there, instead=(("sensor_lag",), ("backlash",))).confidence
+    assert not unconfirmed(DELAY, there) and unconfirmed(DELAY, bent)
+    assert unconfirmed(DELAY, replace(there, plausible=False))
     assert Weight(300.0, 100.0).confirmed and Weight(300.0, 100.0).confidence == pytest.approx(0.75)
-    assert 0.0 < CONFIRMED < 1.0
 
 
-def test_what_unseen_samples_confirm_is_not_believed_where_it_explains_little():
+def test_what_unseen_samples_confirm_is_not_probable_where_it_explains_little():
     """As a supply that sags gains 134 on practice-20, where a spring relaxes, and removes 3 % of the squared error."""
-    little, much = (Weight(134.0, 2483.0, 40.0, 50.0, explains) for explains in (0.03, 0.6))
-    assert little.confirmed and not little.believed
-    assert much.believed and not replace(much, plausible=False).believed
+    little, much = (Weight(gain, 600.0, 40.0, explains) for gain, explains in ((30.0, 0.03), (900.0, 0.8)))
+    assert little.confirmed and unconfirmed(DELAY, little) and not unconfirmed(DELAY, much)
+    assert unconfirmed("supply_voltage", little) and not unconfirmed("supply_voltage", replace(much, explains=0.95))
 
 
-def test_a_name_carries_its_part_of_the_evidence(monkeypatch: pytest.MonkeyPatch):
-    """As load-dependent friction that gains 680 where static friction is missed, and 11,000 is left."""
-    late = data_on(disturbed({"input_delay.delay": 0.02}, seed=0))
-    fit = Estimator(late, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02})
-    found = likelier(beginning(late), fit, Weighing(late, NOMINAL, Inline()))
-    assert set(found.confirmed.weights) == {DELAY}
-    monkeypatch.setattr(weighing, "CARRIES", 1.01)
-    assert not likelier(beginning(late), fit, Weighing(late, NOMINAL, Inline())).confirmed.weights
+def test_an_effect_is_less_probable_the_more_its_best_replacement_gains():
+    alone, nearly, outdone = (Weight(600.0, 500.0, 90.0, 0.6, apart=apart).confidence for apart in (1.0, 0.1, -1.0))
+    assert alone > PROBABLE > nearly > outdone > 0.0
+
+
+@pytest.mark.parametrize(("probable", "named"), [(0.0, True), (1.01, False)])
+def test_an_effect_that_is_not_probable_is_given_up_and_told_as_doubted(monkeypatch, probable: float, named: bool):
+    data = data_on(disturbed({"input_delay.delay": 0.02}, seed=0))
+    fit = Estimator(data, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": 0.02})
+    weighing_it = Weighing(data, NOMINAL, Inline())
+    confirmed = likelier(beginning(data), fit, weighing_it).confirmed
+    assert set(confirmed.weights) == {DELAY}
+    monkeypatch.setattr(module, "PROBABLE", probable)
+    told = told_apart(confirmed, weighing_it, lambda _: None)
+    assert (DELAY in told.weights) is named and ("input_delay" in told.doubted) is not named
+    judged = next(iter(told.weights.values())) if named else told.doubted["input_delay"]
+    assert judged.apart is not None and 0.3 < judged.apart <= 1.0 and judged.confidence > 0.9
 
 
 def test_what_the_others_make_no_model_without_stays(monkeypatch: pytest.MonkeyPatch):
@@ -255,7 +265,7 @@ def test_what_gains_almost_as_much_is_told_with_the_name(delay, told):
     data = data_on(disturbed({"input_delay.delay": delay}, seed=0))
     fit = Estimator(data, NOMINAL).at(Explanation((), (DELAY,)), {"input_delay.delay": delay})
     best = settled(data, NOMINAL, fit)
-    confirmed = Supported(NOMINAL, best, {DELAY: Weight(100.0, 0.0, 100.0, 100.0, 0.9)})
+    confirmed = Supported(NOMINAL, best, {DELAY: Weight(100.0, 0.0, 100.0, 0.9)})
     named = named_in(Beside(best, 0.0, confirmed), data)
     assert (named is not None and named.weights[DELAY].instead == ()) is not told
 
@@ -266,7 +276,7 @@ def by_direction(*free: str, **values: float) -> tuple[Data, Supported]:
     variant = Variant("direction_dependent_friction", free)
     start = {f"{variant.effect}.{name}": value for name, value in values.items()}
     best = settled(data, NOMINAL, Estimator(data, NOMINAL).at(Explanation((), (variant,)), start))
-    return data, Supported(NOMINAL, best, {variant: Weight(1000.0, 100.0, 100.0, 100.0, 0.9)})
+    return data, Supported(NOMINAL, best, {variant: Weight(1000.0, 100.0, 100.0, 0.9)})
 
 
 def test_two_drifts_are_told_in_the_place_of_an_effect_with_as_many_numbers():
