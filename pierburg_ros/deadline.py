@@ -22,15 +22,17 @@ class Deadline:
     """So many `seconds` of an idle machine from now; None: no limit but an interrupt.
 
     Time in which others take the processor counts less, so that a busy machine does not change a verdict: the end has
-    come when the process has worked for so many seconds of processor time, or `SLOWEST` times as many have gone by.
+    come when the process has worked for as much processor time as it takes in so many seconds of an idle machine, or
+    `SLOWEST` times as many have gone by. `pace` is the processor time that it takes in a second there.
 
     deadline = Deadline(30.0)
     found = deadline.attempt(lambda: long_work(deadline.check), otherwise=nothing)
     deadline.stopped  # whether the time was over, or Ctrl-C came, before the work was done
     """
 
-    def __init__(self, seconds: float | None = None) -> None:
+    def __init__(self, seconds: float | None = None, pace: float = 1.0) -> None:
         self._seconds = math.inf if seconds is None else seconds
+        self._pace = pace
         self._begun, self._worked = time.monotonic(), time.process_time()
         self._parent: Deadline | None = None
         self._told = True
@@ -45,7 +47,7 @@ class Deadline:
     def spent(self) -> float:
         """Time that has gone by [s]."""
         gone, worked = time.monotonic() - self._begun, time.process_time() - self._worked
-        return max(min(gone, worked), gone / SLOWEST)
+        return max(min(gone, worked / self._pace), gone / SLOWEST)
 
     def part(self, share: float) -> Deadline:
         """One that ends when this `share` of what is left of it is over; where that stops, it is noted here too."""
@@ -60,7 +62,7 @@ class Deadline:
 
     def _within(self, seconds: float, told: bool) -> Deadline:
         """One of so many `seconds`, without end where this one has none; it may be `told` that their time is over."""
-        part = Deadline(None if math.isinf(self._seconds) else seconds)
+        part = Deadline(None if math.isinf(self._seconds) else seconds, self._pace)
         part._parent, part._told = self, told
         return part
 

@@ -6,7 +6,7 @@ import threading
 import pytest
 
 from pierburg_ros.deadline import Deadline, OutOfTime
-from pierburg_ros.workers import workers
+from pierburg_ros.workers import PACE, cores, pace, workers
 
 
 def interrupted():
@@ -89,6 +89,21 @@ def test_time_in_which_others_work_counts_less(now):
     assert deadline.left == pytest.approx(0.2)
     now.update(clock=51.0, work=1.0)
     assert deadline.left == 0.0
+
+
+def test_what_works_on_two_cores_may_do_as_much_on_a_busy_machine(now):
+    """Parts of it too: on an idle machine 15 s of work take 10 s."""
+    deadline = Deadline(10.0, pace=1.5)
+    now.update(clock=20.0, work=12.0)
+    assert deadline.left == pytest.approx(2.0)
+    part = deadline.part(0.5)
+    now.update(clock=22.0, work=12.75)
+    assert part.left == pytest.approx(0.5)
+
+
+def test_one_job_at_a_time_has_the_pace_of_one():
+    assert pace(1) == 1.0
+    assert pace(2) == (PACE if cores() > 1 else 1.0)
 
 
 def test_two_cores_do_not_halve_the_time(now):

@@ -41,7 +41,7 @@ from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
-from pierburg_ros.workers import workers
+from pierburg_ros.workers import pace, workers
 
 APART = 0.5
 """Share of the time left after effects have been named that the search for disturbances may take. Work: the rest is for
@@ -79,7 +79,7 @@ def diagnose(
     nominal = simulator.model if simulator else nominal
     data = said_of(each_cleaned, evidence(recordings, nominal))
     data = simulator.kept_apart(data) if simulator else data
-    deadline = Deadline(None if budget is None else TRYING * budget)
+    deadline = Deadline(None if budget is None else TRYING * budget, pace(jobs))
     look = partial(examined, nominal=nominal, progress=progress, jobs=jobs, deadline=deadline)
     found, rest = look(data, recordings=recordings)
     if opened := deadline.attempt(partial(bridge_for_load, found, recordings), None):

@@ -41,6 +41,12 @@ HUGE = 1e200
 NEAREST = 1e-3
 """Shortest reach in the search, as a share of the way of a recording. Chosen: a thousandth of it, 0.05 rad where the
 valve goes through its travel thirty times; not varied."""
+SIMPLICES = (1.0, {"xatol": 0.2, "fatol": 5.0}), (-0.7, {"xatol": 0.02, "fatol": 0.5})
+"""Sizes of the simplices, in logarithms, with which the search begins and begins again where it has ended, and how
+nearly each ends. Measured: a simplex may become flat before it reaches the minimum. Of n = 114 searches (19 trials of
+seed 903) one simplex of a twentieth of the start misses it by more than 0.5 in -2 log likelihood in 11, by 358 at most,
+in 77 evaluations on average; these two in none, by 0.12 at most, in 88. The wide one by itself, to the end: 70
+evaluations, 3 misses, 22 at most."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +113,18 @@ class Kalman:
             (math.log(SHORTEST * sample), math.log(LONGEST * longest)),
             (math.log(NEAREST * whole), math.log(whole)),
         ]
-        options = {"xatol": 0.02, "fatol": 0.5}
-        best = minimize(cost, min(starts, key=cost), method="Nelder-Mead", bounds=bounds, options=options).x
+        best = min(starts, key=cost)
+        for simplex, options in SIMPLICES:
+            corners = _simplex(best, simplex, *np.transpose(bounds))
+            own = {"initial_simplex": corners, **options}
+            best = minimize(cost, best, method="Nelder-Mead", bounds=bounds, options=own).x
         return Discrepancy(*(float(value) for value in np.exp(best)))
+
+
+def _simplex(start: Signal, size: float, lower: Signal, upper: Signal) -> Signal:
+    """The corners of a simplex at `start`, shape (quantities + 1, quantities), within bounds."""
+    steps = np.where((start + size >= lower) & (start + size <= upper), size, -size)
+    return np.asarray(np.clip(np.vstack([start, start + np.diag(steps)]), lower, upper))
 
 
 def _steps(run: Run) -> Signal:
