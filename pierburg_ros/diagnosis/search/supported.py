@@ -151,7 +151,7 @@ def likelier(beside: Beside, fit: Fit, weighing: Weighing) -> Beside:
     reached = weighing.settled(fit)
     if beside.reached.cost - reached.cost < SIGNIFICANT or strange(reached.fit, weighing.data, weighing.nominal):
         return beside
-    now = weighing.heard(weighing.weighed(reached))
+    now = weighing.heard(weighing.weighed(weighing.lightened(reached)))
     return replace(beside, reached=reached, confirmed=_likeliest(beside.confirmed, now, reached))
 
 

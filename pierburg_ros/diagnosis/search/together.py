@@ -13,6 +13,7 @@ from concurrent.futures import Executor
 import numpy as np
 from scipy.linalg import qr
 
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -106,11 +107,39 @@ def drifting_fewer(fit: Fit, estimator: Estimator, drifts: Sequence[str], count:
     for chosen in itertools.combinations(range(len(drifts)), count):
         free = np.arange(begin.size) >= len(drifts)
         free[list(chosen)] = True
-        step = np.where(free, 0.0, back)
-        if free.any():
-            step[free] = np.linalg.lstsq(triangle[:, free], -triangle @ step, rcond=None)[0]
-        grown = float(np.sum(np.square(triangle @ step)))
+        step, growth = _returned(triangle, back, free)
         values = coordinates.values(np.clip(begin + step, *coordinates.bounds))
         own = Explanation(tuple(everything.drifted[place] for place in chosen), everything.variants)
-        found.append((grown, (own, {**estimator.nominal.values, **values})))
+        found.append((growth, (own, {**estimator.nominal.values, **values})))
     return [each for _, each in sorted(found, key=lambda one: one[0])]
+
+
+def needless(fit: Fit, estimator: Estimator, worth: float) -> tuple[str, ...]:
+    """The drifts of a `fit` by this `estimator` that may return to nominal for less than `worth` each, in chi2.
+
+    They return one after another, the one that costs least first, by one linear step of all others.
+    """
+    explanation = fit.explanation
+    back = estimator.coordinates(explanation).point(estimator.nominal.values) - fit.solution.point
+    triangle = np.asarray(qr(fit.solution.jacobian, mode="r")[0])[: back.size]
+    left, free = list(explanation.drifted), np.ones(back.size, dtype=bool)
+    while left:
+        growths = dict[str, float]()
+        for name in left:
+            others = free.copy()
+            others[explanation.names.index(name)] = False
+            growths[name] = _returned(triangle, back, others)[1]
+        least = min(left, key=lambda name: growths[name])
+        if growths[least] >= worth * (len(explanation.drifted) - len(left) + 1):
+            break
+        free[explanation.names.index(least)] = False
+        left.remove(least)
+    return tuple(name for name in explanation.drifted if name not in left)
+
+
+def _returned(triangle: Signal, back: Signal, free: Flags) -> tuple[Signal, float]:
+    """The linear step in which all but the `free` quantities go `back`, and how chi2 grows; shapes (quantities,)."""
+    step = np.where(free, 0.0, back)
+    if free.any():
+        step[free] = np.linalg.lstsq(triangle[:, free], -triangle @ step, rcond=None)[0]
+    return step, float(np.sum(np.square(triangle @ step)))

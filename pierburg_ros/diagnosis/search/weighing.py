@@ -11,6 +11,7 @@ from pierburg_ros.diagnosis.search.belief import PROBABLE, of_drift, of_effect
 from pierburg_ros.diagnosis.search.moved import moved
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, scored, settled, strange, unseen
 from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
+from pierburg_ros.diagnosis.search.together import needless
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -124,7 +125,7 @@ class Weighing:
 
     def needed(self, reached: Scored) -> Supported:
         """The explanation reached without the quantities that it does not need, weighed."""
-        return self.thinned(self.weighed(reached), idle)
+        return self.thinned(self.weighed(self.lightened(reached)), idle)
 
     def heard(self, told: Supported) -> Supported:
         """The part of an explanation that unseen samples confirm, weighed."""
@@ -143,6 +144,17 @@ class Weighing:
             estimator = estimator_beside(self.data, self.nominal, reached.discrepancy)
             return self.weighed(self.settled(lowered(estimator, estimator.restated(reached.fit))))
         return self.weighed(self.lacking(reached, quantity))
+
+    def lightened(self, reached: Scored) -> Scored:
+        """`reached` without the drifts that a linear step does not need, the others fitted again; itself if that costs
+        more than `SIGNIFICANT` for each of them.
+
+        Weighing takes a fit for each quantity, and again after each that is given up.
+        """
+        beside = estimator_beside(self.data, self.nominal, reached.discrepancy)
+        out = needless(beside.restated(reached.fit), beside, SIGNIFICANT)
+        rest = self.lacking(reached, *out) if out else reached
+        return rest if rest.cost - reached.cost < SIGNIFICANT * len(out) else reached
 
     def thinned(self, told: Supported, out: Callable[[Quantity, Weight], bool]) -> Supported:
         """The explanation without the quantities that are `out`: the weakest goes first, then all are weighed again."""

@@ -8,7 +8,7 @@ import pytest
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.together import drifting_apart, drifting_fewer
+from pierburg_ros.diagnosis.search.together import drifting_apart, drifting_fewer, needless
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
@@ -55,3 +55,18 @@ def test_every_combination_is_asked_once_with_all_effects(estimator: Estimator, 
         assert [explanation.variants for explanation, _ in begins] == [(LAG,)] * len(begins)
         asked = {explanation.drifted for explanation, _ in begins}
         assert asked == set(itertools.combinations(DRIFTS, count)) and len(asked) == len(begins)
+
+
+def test_drifts_that_are_not_there_are_needless(estimator: Estimator, everything: Fit) -> None:
+    """A fit of the others confirms it; products of parameters may stand in for the true ones."""
+    out = needless(everything, estimator, 15.0)
+    kept = tuple(name for name in everything.explanation.drifted if name not in out)
+    rest = estimator.fit(Explanation(kept, (LAG,)), everything.values)
+    assert len(kept) == 2
+    assert rest.chi2 - everything.chi2 < 15.0 * len(out)
+
+
+def test_drifts_that_are_there_are_not_needless(estimator: Estimator) -> None:
+    true = estimator.fit(Explanation(("armature_resistance", "coulomb_friction"), (LAG,)), TRUE)
+    assert needless(true, estimator, 15.0) == ()
+    assert set(needless(true, estimator, 1e12)) == set(true.explanation.drifted)
