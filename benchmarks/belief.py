@@ -9,16 +9,15 @@ into its section of docs/trust.md; --no-write only prints.
 import argparse
 import json
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from machine import write_section
 from scipy.optimize import minimize
 from scipy.special import expit
+from stated import table
 
 from pierburg_ros.diagnosis.search.belief import of_effect
-from pierburg_ros.proof.intervals import Share
 
 BOUNDS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 """Between which probabilities are counted together."""
@@ -50,16 +49,10 @@ def regression(given: list[Case]) -> np.ndarray:
     return np.asarray(minimize(cost, np.zeros(4)).x)
 
 
-def table(stated: list[float], right: list[bool]) -> str:
+def rows(stated: list[float], right: list[bool]) -> str:
     """One row for each range of probability."""
-    lines = ["| probability | effects | right, by their probabilities | concealed indeed (95 % Wilson interval) |"]
-    lines.append("|---|---|---|---|")
-    for low, high in pairwise(BOUNDS):
-        group = [(p, true) for p, true in zip(stated, right, strict=True) if low <= p < high or p == high == 1.0]
-        if group:
-            expected, true = (sum(column) for column in zip(*group, strict=True))
-            lines.append(f"| {low:g} to {high:g} | {len(group)} | {expected:.1f} | {Share(true, len(group))} |")
-    return "\n".join(lines)
+    given = list(zip(stated, right, strict=True))
+    return table(given, BOUNDS, ("probability", "effects", "right, by their probabilities"))
 
 
 def main() -> None:
@@ -72,7 +65,7 @@ def main() -> None:
     right = [true for _, (_, true) in found]
     count = f"n = {len(found)} effects in {len({trial for trial, _ in found})} trials."
     stated = [of_effect(*numbers) for _, (numbers, _) in found]
-    text = f"{table(stated, right)}\n\n{count} Made by `python benchmarks/belief.py`."
+    text = f"{rows(stated, right)}\n\n{count} Made by `python benchmarks/belief.py`."
     print(text)
     if not given.no_write:
         write_section("belief", text, "trust.md")
@@ -82,7 +75,7 @@ def main() -> None:
         odds = regression([case for other, case in found if other != trial])
         unseen.append(float(expit(odds @ [1.0, *numbers])))
     print("\nwith each trial left out of the regression:\n")
-    print(table(unseen, right))
+    print(rows(unseen, right))
 
 
 if __name__ == "__main__":

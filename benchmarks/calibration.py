@@ -8,12 +8,10 @@ docs/trust.md; --no-write only prints.
 import argparse
 import json
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 from machine import write_section
-
-from pierburg_ros.proof.intervals import Share
+from stated import table
 
 BOUNDS = (0.0, 0.5, 0.9, 0.99, 1.0)
 """Between which confidences are counted together; the last group holds 1 itself."""
@@ -30,21 +28,6 @@ def named(diagnoses: Path, truths: list[Path]) -> Iterator[tuple[float, bool]]:
                     yield effect["confidence"], effect["id"] in concealed
 
 
-def table(names: list[tuple[float, bool]]) -> str:
-    """One row for each range of confidence."""
-    rows = []
-    for low, high in pairwise(BOUNDS):
-        group = [each for each in names if low <= each[0] < high or each[0] == high == 1.0]
-        if group:
-            stated, right = (sum(column) for column in zip(*group, strict=True))
-            rows.append(f"| {low:g} to {high:g} | {len(group)} | {stated:.1f} | {Share(right, len(group))} |")
-    heads = [
-        "| confidence | names given | right, by their confidences | concealed indeed (95 % Wilson interval) |",
-        "|---|---|---|---|",
-    ]
-    return "\n".join([*heads, *rows])
-
-
 def main() -> None:
     """Count, print, write."""
     parser = argparse.ArgumentParser()
@@ -53,7 +36,8 @@ def main() -> None:
     parser.add_argument("--no-write", action="store_true")
     given = parser.parse_args()
     names = list(named(given.diagnoses, given.truths))
-    text = f"{table(names)}\n\nn = {len(names)} names. Made by `python benchmarks/calibration.py`."
+    rows = table(names, BOUNDS, ("confidence", "names given", "right, by their confidences"))
+    text = f"{rows}\n\nn = {len(names)} names. Made by `python benchmarks/calibration.py`."
     print(text)
     if not given.no_write:
         write_section("calibration", text, "trust.md")
