@@ -122,19 +122,15 @@ def needless(fit: Fit, estimator: Estimator, worth: float) -> tuple[str, ...]:
     explanation = fit.explanation
     back = estimator.coordinates(explanation).point(estimator.nominal.values) - fit.solution.point
     triangle = np.asarray(qr(fit.solution.jacobian, mode="r")[0])[: back.size]
-    left, free = list(explanation.drifted), np.ones(back.size, dtype=bool)
-    while left:
-        growths = dict[str, float]()
-        for name in left:
-            others = free.copy()
-            others[explanation.names.index(name)] = False
-            growths[name] = _returned(triangle, back, others)[1]
-        least = min(left, key=lambda name: growths[name])
-        if growths[least] >= worth * (len(explanation.drifted) - len(left) + 1):
+    drifted, free = explanation.drifted, np.ones(back.size, dtype=bool)
+    for count in range(1, len(drifted) + 1):
+        left = [int(place) for place in np.flatnonzero(free[: len(drifted)])]
+        growths = {place: _returned(triangle, back, free & (np.arange(back.size) != place))[1] for place in left}
+        least = min(left, key=lambda place: growths[place])
+        if growths[least] >= worth * count:
             break
-        free[explanation.names.index(least)] = False
-        left.remove(least)
-    return tuple(name for name in explanation.drifted if name not in left)
+        free[least] = False
+    return tuple(name for name, kept in zip(drifted, free, strict=False) if not kept)
 
 
 def _returned(triangle: Signal, back: Signal, free: Flags) -> tuple[Signal, float]:
