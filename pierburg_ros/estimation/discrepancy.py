@@ -46,7 +46,8 @@ SIMPLICES = (1.0, {"xatol": 0.2, "fatol": 5.0}), (-0.7, {"xatol": 0.02, "fatol":
 nearly each ends. Measured: a simplex may become flat before it reaches the minimum. Of n = 114 searches (19 trials of
 seed 903) one simplex of a twentieth of the start misses it by more than 0.5 in -2 log likelihood in 11, by 358 at most,
 in 77 evaluations on average; these two in none, by 0.12 at most, in 88. The wide one by itself, to the end: 70
-evaluations, 3 misses, 22 at most."""
+evaluations, 3 misses, 22 at most. Of n = 55 searches near a known discrepancy the second one alone misses none by more
+than 0.6, where it begins up to 1,115 above, in 48."""
 
 
 @dataclass(frozen=True)
@@ -90,10 +91,13 @@ class Kalman:
         own = discrepancy.size, discrepancy.memory, discrepancy.reach
         return float(_evidence(residual, self.steps, self.way, self.seen, *own))
 
-    def most_likely(self, residual: Signal, beside: Signal | None = None) -> Discrepancy:
+    def most_likely(
+        self, residual: Signal, beside: Signal | None = None, near: Discrepancy | None = None
+    ) -> Discrepancy:
         """The discrepancy under which a residual [noise], shape (samples,), is most likely.
 
         With a column `beside` it, shape (samples,), the best multiple of the column is taken out for each discrepancy.
+        If that of almost the same residual is known, the search begins `near` it.
         """
 
         def cost(point: Signal) -> float:
@@ -107,15 +111,19 @@ class Kalman:
         whole = float(np.max(np.bincount(self.run, weights=self.way), initial=0.0)) + 1.0
         longest = float(np.max(np.bincount(self.run, weights=np.where(np.isinf(self.steps), 0.0, self.steps))))
         sample = float(np.median(self.steps))
-        starts = [np.log([scale, memory, reach]) for memory in longest * MEMORIES for reach in whole * REACHES]
         bounds = [
             (math.log(SMALLEST), math.log(LARGEST * scale)),
             (math.log(SHORTEST * sample), math.log(LONGEST * longest)),
             (math.log(NEAREST * whole), math.log(whole)),
         ]
-        best = min(starts, key=cost)
-        for simplex, options in SIMPLICES:
-            corners = _simplex(best, simplex, *np.transpose(bounds))
+        lower, upper = np.transpose(bounds)
+        if near is None:
+            starts = [np.log([scale, memory, reach]) for memory in longest * MEMORIES for reach in whole * REACHES]
+            best = min(starts, key=cost)
+        else:
+            best = np.clip(np.log([near.size, near.memory, near.reach]), lower, upper)
+        for simplex, options in SIMPLICES if near is None else SIMPLICES[1:]:
+            corners = _simplex(best, simplex, lower, upper)
             own = {"initial_simplex": corners, **options}
             best = minimize(cost, best, method="Nelder-Mead", bounds=bounds, options=own).x
         return Discrepancy(*(float(value) for value in np.exp(best)))

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.evolution import evolved
 from pierburg_ros.estimation.least_squares import BRIEF
@@ -128,7 +129,10 @@ def _descended(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
 
 
 def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
-    """Starts of descents after a leap of one parameter: the lowest points among scans of the parameters beside it."""
+    """Starts of descents after a leap of one parameter of an effect whose cost has many local minima.
+
+    They are the lowest points among scans of the parameters beside it.
+    """
     names, landings = fit.explanation.names, []
     axes, units = estimator.coordinates(fit.explanation).axes, np.eye(len(names))
     for leaps, most in LEAPS.items():
@@ -137,7 +141,7 @@ def _landings(estimator: Estimator, fit: Fit) -> list[dict[str, float]]:
             effect = name.split(".")[0]
             beside = [i for i, other in enumerate(names) if other != name and other.split(".")[0] == effect]
             scales = [fit.solution.point[i] * units[i] for i in beside]
-            for leap in leaps if "." in name and axis.logarithmic else ():
+            for leap in leaps if axis.logarithmic and effect in EFFECT and EFFECT[effect].jumps else ():
                 scans = [leap * unit + share * scale for scale in scales for share in SCAN]
                 found.append(min(_measured(estimator, fit, [leap * unit, *scans]), key=lambda landing: landing[0]))
         landings += [values for _, values in sorted(found, key=lambda landing: landing[0])[:most]]

@@ -77,6 +77,13 @@ def test_the_most_likely_one_is_no_less_likely_than_the_true_one(kalman):
     assert evidence(kalman.filtered(found), residual) <= evidence(kalman.filtered(true), residual) + 0.5
 
 
+def test_from_a_known_one_nearby_the_search_ends_as_low(kalman):
+    true = Discrepancy(8.0, 3.0, 2000.0)
+    residual = wandering(kalman, true.size, true.memory, true.reach)
+    far, near = kalman.most_likely(residual), kalman.most_likely(residual, near=Discrepancy(16.0, 1.5, 1000.0))
+    assert kalman.evidence(near, residual) == pytest.approx(kalman.evidence(far, residual), abs=0.5)
+
+
 @pytest.mark.parametrize("seed", [4, 5, 10])
 def test_another_search_that_goes_on_from_there_gains_next_to_nothing(kalman, seed):
     """By conjugate directions. Of these three, one simplex alone stops 6.5 too high in the last."""

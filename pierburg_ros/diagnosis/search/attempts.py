@@ -10,19 +10,17 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.candidates import drifting
+from pierburg_ros.diagnosis.search.first_part import first_part
 from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import adequate, alike, betters, tied
 from pierburg_ros.diagnosis.search.tried import Progress
-from pierburg_ros.estimation.data import BLOCK, CYCLE, Data
+from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.refinement import NEARLY, refined
 from pierburg_ros.plant import Model
 
-FIRST_PART = 2 * CYCLE * BLOCK
-"""Length of the part of a recording that a first fit uses, in the actuator's own time. Derived: two cycles of eight
-blocks, so that every kind of block occurs twice."""
 LEADING = 0.25
 """Largest share of the squared error beyond the noise that one more quantity may leave. Up to this share, its
 explanation may be refined, or grown before others of its size are tried. Measured: ripples that are there left 0.005 or
@@ -47,7 +45,7 @@ class Attempts:
         self.drifts = drifting(nominal)
         self.whole = Estimator(data, nominal)
         self.alone = Estimator(data, nominal, pool.map)
-        self.first_part = Estimator(data.cut(FIRST_PART * data.scales.time), nominal)
+        self.first_part = first_part(self.whole)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
         self.stood: set[Explanation] = set()

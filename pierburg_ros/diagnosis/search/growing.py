@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of, with_drifts
-from pierburg_ros.diagnosis.search.linear import promised, promised_by_drift
+from pierburg_ros.diagnosis.search.first_part import first_part, takes_time, where_shown
+from pierburg_ros.diagnosis.search.linear import promised, promised_left
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, plausible, scored, strange
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
@@ -32,9 +32,9 @@ before that. Work: each costs a brief descent and a search for the discrepancy; 
 
 @dataclass(frozen=True)
 class _Promise:
-    """An explanation to be fitted from a start, with the chi2 that a linear step promises."""
+    """An explanation to be fitted from a start, with the share of chi2 that a linear step promises to leave."""
 
-    chi2: float
+    left: float
     explanation: Explanation
     start: dict[str, float]
 
@@ -51,7 +51,7 @@ def grown(data: Data, nominal: Model, base: Scored, pool: Executor, progress: Pr
     ways = [_Way(beside, beside.restated(base.fit), progress), _Way(alone, alone.fit(own, values, BRIEF), progress)]
     # the steps of both ways are handed out together, so that no core waits
     promises = [pool.map(way.promise, way.tasks) for way in ways]
-    followed = [(way, one) for way, each in zip(ways, promises, strict=True) for one in _lowest(filter(None, each))]
+    followed = [(way, one) for way, each in zip(ways, promises, strict=True) for one in _ahead(each)]
     fitted = pool.map(lambda one: (one[0], one[0].fitted(one[1])), followed)
     sensible = [(way, fit) for way, fit in fitted if not strange(fit, data, nominal)]
     reached = pool.map(lambda one: (one[0], scored(data, one[1])), sensible)
@@ -71,7 +71,7 @@ def drifted(data: Data, nominal: Model, base: Scored, pool: Executor, progress: 
     progress(f"{own.label}, beside two drifts")
     begin = estimator.fit(own, base.fit.values, BRIEF).values
     fits = pool.map(lambda pair: estimator.fit(pair, begin, BRIEF), with_drifts(own, drifting(nominal), 2))
-    return _likeliest(_lowest(fits), data, nominal, pool)
+    return _likeliest(sorted(fits, key=lambda fit: fit.chi2)[:FOLLOWED], data, nominal, pool)
 
 
 def _likeliest(fits: Iterable[Fit], data: Data, nominal: Model, pool: Executor) -> list[Scored]:
@@ -102,10 +102,17 @@ class _Way:
         """All possible additions, each with its starts."""
         return [*((name, []) for name in self.drifts), *self.starts.items()]
 
+    @cached_property
+    def quick(self) -> tuple[Estimator, Fit]:
+        """Where a promise is evaluated unless it takes time: an estimator, and `base` there."""
+        return where_shown(self.base, self.estimator, first_part(self.estimator))
+
     def promise(self, task: tuple[Addition, list[Start]]) -> _Promise | None:
         """What one linear step along an addition promises; None if it cannot be added."""
         addition, starts = task
-        fit, own = self.base, self.base.explanation
+        slow = isinstance(addition, Variant) and takes_time(addition)
+        estimator, fit = (self.estimator, self.base) if slow else self.quick
+        own, before = fit.explanation, promised_left(fit)
         larger = (
             Explanation((*own.drifted, addition), own.variants) if isinstance(addition, str) else own.plus(addition)
         )
@@ -113,9 +120,9 @@ class _Way:
         if explanation is None:
             return None
         if isinstance(addition, str):
-            return _Promise(promised_by_drift(self.estimator.at(explanation, fit.values)), explanation, fit.values)
-        ways = promised(self.estimator, fit, addition, starts)
-        return _Promise(ways[0][0], explanation, {**fit.values, **ways[0][1]}) if ways else None
+            return _Promise(promised_left(estimator.at(explanation, fit.values)) / before, explanation, fit.values)
+        ways = promised(estimator, fit, addition, starts)
+        return _Promise(ways[0][0] / before, explanation, {**fit.values, **ways[0][1]}) if ways else None
 
     def fitted(self, promise: _Promise) -> Fit:
         """The brief fit from the start of a promise."""
@@ -129,12 +136,9 @@ class _Way:
         )
 
 
-_Counted = TypeVar("_Counted", Fit, _Promise)
-
-
-def _lowest(found: Iterable[_Counted]) -> list[_Counted]:
-    """The `FOLLOWED` ones with the lowest chi2."""
-    return sorted(found, key=lambda each: each.chi2)[:FOLLOWED]
+def _ahead(promises: Iterable[_Promise | None]) -> list[_Promise]:
+    """The `FOLLOWED` promises of those that could be made that leave least."""
+    return sorted(filter(None, promises), key=lambda each: each.left)[:FOLLOWED]
 
 
 def anew(estimator: Estimator, fit: Fit, starts: Mapping[Variant, list[Start]]) -> Fit:

@@ -51,7 +51,7 @@ def promised(
     return sorted(found, key=lambda pair: pair[0])
 
 
-def promised_by_drift(fit: Fit) -> float:
+def promised_left(fit: Fit) -> float:
     """The chi2 that one linear step from `fit` promises."""
     left = projection(fit)(fit.solution.residual)
     return float(left @ left)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.stretches import forgotten
 from pierburg_ros.diagnosis.search.candidates import possible
+from pierburg_ros.diagnosis.search.first_part import takes_time, where_shown
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Ripple
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -39,20 +40,28 @@ def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:
 
 
 def between_rests(
-    estimator: Estimator, variant: Variant, ripple: Ripple, bases: Mapping[Explanation, Fit], pool: Executor
+    whole: Estimator,
+    first: Estimator,
+    variant: Variant,
+    ripple: Ripple,
+    bases: Mapping[Explanation, Fit],
+    pool: Executor,
 ) -> list[Fit]:
     """Fits of explanations with a `ripple`, each grown on the fit without it in `bases`: the `FOLLOWED` best ones.
 
     The shaft rests where the ripple lets it. If it sets off at the wrong crest, everything after that is displaced, so
-    a descent over a whole recording ends where one such moment is wrong. Between rests this does not happen. For the
-    base with the lowest error, one descent starts from the best phase of each rhythm that lowers this error. Bases with
-    a change in mid-recording, or with an effect that remembers longer than a rest, are left out. If no rhythm lowers
-    the error, the list is empty.
+    a descent over a whole recording ends where one such moment is wrong. Between rests this does not happen, and the
+    `first` part of each recording will do if it shows the error. For the base with the lowest error, one descent starts
+    from the best phase of each rhythm that lowers this error. Bases with a change in mid-recording, or with an effect
+    that remembers longer than a rest, are left out. If no rhythm lowers the error, the list is empty. The fits that are
+    given are of `whole` recordings.
     """
-    rests = estimator.between_rests
-    grown = [(e, rests.restated(base)) for e, base in bases.items() if e.changed is None and forgotten(e.effects)]
+    grown = {e: base for e, base in bases.items() if e.changed is None and forgotten(e.effects)}
     if not grown:
         return []
+    nearest = min(grown.values(), key=lambda base: base.chi2)
+    rests = (whole if takes_time(variant) else where_shown(nearest, whole, first)[0]).between_rests
+    begins = [(explanation, rests.restated(base)) for explanation, base in grown.items()]
     held = f"{variant.effect}.{ripple.rhythm}" if ripple.whole else None
 
     def descended(explanation: Explanation, values: Mapping[str, float]) -> Fit:
@@ -60,31 +69,36 @@ def between_rests(
 
     def finished(fit: Fit) -> Fit:
         if held is not None:
-            fit = estimator.fit(fit.explanation, fit.values, held=held)
-        return estimator.fit(fit.explanation, fit.values)
+            fit = whole.fit(fit.explanation, fit.values, held=held)
+        return whole.fit(fit.explanation, fit.values)
 
-    explanation, base = min(grown, key=lambda pair: pair[1].chi2)
-    starts = _scanned(estimator, variant, ripple, explanation, base, pool)
+    explanation, base = min(begins, key=lambda pair: pair[1].chi2)
+    rhythms = ripple.rhythms(missing_torque(whole.data, whole.data.longest, base.model))
+    starts = _scanned(rests, variant, ripple, rhythms, explanation, base, pool)
     found = list(pool.map(lambda start: descended(explanation, {**base.values, **start}), starts))
     if not found:
         return []
     lowest = min(found, key=lambda fit: fit.chi2)
     own = {name: value for name, value in lowest.values.items() if name.startswith(f"{variant.effect}.")}
-    others = [(e, other) for e, other in grown if e != explanation]
+    others = [(e, other) for e, other in begins if e != explanation]
     found = [lowest, *pool.map(lambda pair: descended(pair[0], {**pair[1].values, **own}), others)]
     return list(pool.map(finished, sorted(found, key=lambda fit: fit.chi2)[:FOLLOWED]))
 
 
 def _scanned(
-    estimator: Estimator, variant: Variant, ripple: Ripple, explanation: Explanation, base: Fit, pool: Executor
+    rests: Estimator,
+    variant: Variant,
+    ripple: Ripple,
+    rhythms: Iterable[float],
+    explanation: Explanation,
+    base: Fit,
+    pool: Executor,
 ) -> list[dict[str, float]]:
-    """For each rhythm that lowers the error of `base` between rests, its best start at one small amplitude."""
-    missing = missing_torque(estimator.data, estimator.data.longest, base.model)
+    """The best start of each of the `rhythms` that lowers the error of `base` between rests, at one small amplitude."""
     effect, scales = EFFECT[variant.effect], base.model.scales
-    rows = [(AMPLITUDE, *row) for row in itertools.product(dict.fromkeys(ripple.rhythms(missing)), PHASES)]
+    rows = [(AMPLITUDE, *row) for row in itertools.product(dict.fromkeys(rhythms), PHASES)]
     own = (effect.in_units(dict(zip(variant.free, row, strict=True)), scales) for row in rows)
     starts = [{f"{variant.effect}.{name}": value for name, value in start.items()} for start in own]
-    rests = estimator.between_rests
     costs = pool.map(lambda start: rests.chi2_at(explanation, {**base.values, **start}), starts)
     best: dict[float, dict[str, float]] = {}
     for cost, (_, rhythm, _), start in sorted(zip(costs, rows, starts, strict=True), key=lambda each: each[0]):

@@ -29,11 +29,11 @@ class Scored:
         return self.cost - self.fit.solution.residual.size
 
 
-def scored(data: Data, fit: Fit) -> Scored:
-    """`fit`, not fitted again, with its most likely discrepancy."""
+def scored(data: Data, fit: Fit, near: Discrepancy | None = None) -> Scored:
+    """`fit`, not fitted again, with its most likely discrepancy; the search for that may begin `near` a known one."""
     kalman = Kalman(data, data.train)
     residual = data.residual(fit.model, fit.switch)
-    discrepancy = kalman.most_likely(residual)
+    discrepancy = kalman.most_likely(residual, near=near)
     return Scored(fit, discrepancy, kalman.evidence(discrepancy, residual))
 
 
@@ -60,7 +60,7 @@ def settled(data: Data, nominal: Model, fit: Fit) -> Scored:
     best = scored(data, fit)
     while True:
         estimator = estimator_beside(data, nominal, best.discrepancy)
-        again = scored(data, estimator.fit(fit.explanation, best.fit.values, BRIEF))
+        again = scored(data, estimator.fit(fit.explanation, best.fit.values, BRIEF), best.discrepancy)
         gain, best = best.cost - again.cost, min(best, again, key=lambda each: each.cost)
         if gain < PROMISING:
             return best

@@ -9,16 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.diagnosis.search.candidates import Addition, expansions
-from pierburg_ros.diagnosis.search.linear import change_starts, promised, promised_by_drift
+from pierburg_ros.diagnosis.search.first_part import takes_time, where_shown
+from pierburg_ros.diagnosis.search.linear import change_starts, promised, promised_left
 from pierburg_ros.diagnosis.search.selection import PROMISING, adequate
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
-LATE = 0.5
-"""Squared error beyond the noise in the first part, as a share of that in the whole, below which a first fit uses whole
-recordings. Derived: the first part would show less than half of what is left to explain."""
 Promised = tuple[float, dict[str, float]]
 """The chi2 that a linear step promises, and the start that it leads to."""
 STARTS_TRIED = 2
@@ -66,8 +64,7 @@ def screened(
 ) -> list[Candidate]:
     """Every addition to `fit` with its promise, on the `first_part` of each run if that shows the error left."""
     base = whole.restated(fit)
-    brief = first_part.restated(base)
-    quick = (whole, base) if _shows_late(brief, base) else (first_part, brief)
+    quick = where_shown(base, whole, first_part)
 
     def candidate(task: tuple[Explanation, tuple[Addition, list[Start]]]) -> Candidate:
         explanation, (addition, starts) = task
@@ -76,7 +73,7 @@ def screened(
             return _changing(explanation, whole, base)
         if isinstance(addition, str):
             return _drifting(explanation, addition, *quick)
-        slow = explanation.changed is not None or _takes_time(addition)
+        slow = explanation.changed is not None or takes_time(addition)
         return _acting(explanation, addition, starts, *((whole, base) if slow else quick))
 
     return list(pool.map(candidate, expansions(base, whole.data, drifts).items()))
@@ -85,12 +82,6 @@ def screened(
 def most_promising(candidates: list[Candidate], most: int) -> list[Candidate]:
     """The `most` candidates for which a linear step promises the lowest error."""
     return sorted(candidates, key=lambda candidate: candidate.promise)[:most]
-
-
-def _takes_time(variant: Variant) -> bool:
-    """Whether an effect depends on the time since the start: the first part of a recording may not show it."""
-    effect = EFFECT[variant.effect]
-    return effect.dated or effect.memory == "lasting"
 
 
 def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Candidate:
@@ -103,7 +94,7 @@ def _changing(explanation: Explanation, estimator: Estimator, base: Fit) -> Cand
 
 def _drifting(explanation: Explanation, name: str, estimator: Estimator, base: Fit) -> Candidate:
     """The candidate with one more drift added to `base`."""
-    promise = promised_by_drift(estimator.at(explanation, base.values))
+    promise = promised_left(estimator.at(explanation, base.values))
     starts = _worthwhile([(promise, base.values)], base)
     return Candidate(explanation, name, estimator, base, tuple(start for _, start in starts), _error(promise, base))
 
@@ -128,8 +119,3 @@ def _worthwhile(starts: Sequence[Promised], base: Fit) -> Sequence[Promised]:
 def _error(chi2: float, fit: Fit) -> float:
     """The error over noise that belongs to a sum of squares on the samples of `fit`."""
     return float(np.sqrt(chi2 / fit.solution.residual.size))
-
-
-def _shows_late(first_part: Fit, whole: Fit) -> bool:
-    """Whether a fit of the first part would miss most of what is left to explain."""
-    return first_part.ratio**2 - 1.0 < LATE * (whole.ratio**2 - 1.0)

@@ -7,7 +7,7 @@ import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, promised, promised_by_drift, redated
+from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, promised, promised_left, redated
 from pierburg_ros.estimation.data import all_training, data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
@@ -25,7 +25,7 @@ def estimator_on(changes: dict[str, float]) -> Estimator:
 
 def test_a_step_along_a_small_drift_leaves_the_noise() -> None:
     estimator = estimator_on({"spring_preload": 0.291})
-    promise = promised_by_drift(estimator.at(Explanation(("spring_preload",))))
+    promise = promised_left(estimator.at(Explanation(("spring_preload",))))
     fit = estimator.fit(Explanation(("spring_preload",)))
     assert promise == pytest.approx(fit.chi2, rel=0.02)
     assert promise < 0.9 * estimator.at(NOTHING).chi2
