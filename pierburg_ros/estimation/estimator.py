@@ -104,7 +104,11 @@ class Estimator:
     @cached_property
     def between_rests(self) -> Estimator:
         """The same for recordings cut where the shaft rests: the cost is smoother, the values are only nearly right."""
-        return Estimator(cut_at_rests(self.data), self.nominal, self.over, self.discrepancy, self.unit)
+        return self.on(cut_at_rests(self.data))
+
+    def on(self, data: Data) -> Estimator:
+        """The same for other data."""
+        return Estimator(data, self.nominal, self.over, self.discrepancy, self.unit)
 
     def residual(self, model: Model, switch: Switch | None = None) -> Signal:
         """Training residual of `model` [noise], or its innovations; large where the model cannot be simulated."""

@@ -100,6 +100,11 @@ class Solution:
         """Derivative of the residual at the point, shape (samples, quantities); computed at its first use."""
         return self.slope()
 
+    @cached_property
+    def basis(self) -> Signal:
+        """Orthonormal basis of what small moves from the point do to the residual, shape (samples, quantities)."""
+        return np.asarray(np.linalg.qr(self.jacobian)[0])
+
 
 def minimise(
     residual: Residual,

@@ -107,9 +107,9 @@ def _descended(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
     """`fit`, or the lowest fit to which rounds of descents have led.
 
     One descent starts at the lowest of many points. From the second round on, others start at half the longest reach
-    along the weakest axis. In the first round of a `leaping` search, others start where leaps along logarithmic
-    parameters land. The valley of the cost bends, so no point on a straight line shows how low it runs there. Rounds
-    take fine and coarse differences for the Jacobian in turn. The search ends when neither helps.
+    along the weakest axis. In the first round of a `leaping` search, others start at the `_landings`. The valley of the
+    cost bends, so no point on a straight line shows how low it runs there. Rounds take fine and coarse differences for
+    the Jacobian in turn. The search ends when neither helps.
     """
     idle = 0
     for number in range(ROUNDS):

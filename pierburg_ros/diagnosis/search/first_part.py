@@ -18,8 +18,7 @@ recordings. Derived: the first part would show less than half of what is left to
 
 def first_part(whole: Estimator) -> Estimator:
     """The same for the first part of each run."""
-    data = whole.data.cut(FIRST_PART * whole.data.scales.time)
-    return Estimator(data, whole.nominal, whole.over, whole.discrepancy, whole.unit)
+    return whole.on(whole.data.cut(FIRST_PART * whole.data.scales.time))
 
 
 def where_shown(base: Fit, whole: Estimator, first: Estimator) -> tuple[Estimator, Fit]:

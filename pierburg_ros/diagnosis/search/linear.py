@@ -172,7 +172,7 @@ def _added(base: Fit, variant: Variant, start: Start) -> tuple[Model, Switch | N
 
 def projection(fit: Fit) -> Callable[[Signal], Signal]:
     """Projection of residuals, shape (samples,) or (samples, some), onto what re-fitting `fit` cannot change."""
-    basis = np.linalg.qr(fit.solution.jacobian)[0]
+    basis = fit.solution.basis
     return lambda residual: residual - basis @ (basis.T @ residual)
 
 
