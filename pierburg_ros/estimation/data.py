@@ -30,6 +30,9 @@ than the 1.15 s in which the valve forgets; not varied."""
 CYCLE = 8
 """Number of blocks in a cycle: the third validates, the seventh tests, and the others train. Chosen: an eighth each, as
 far apart as possible; not varied."""
+FIRST_PART = 2 * CYCLE * BLOCK
+"""Length of the part of a recording that a first fit uses, in the actuator's own time. Derived: two cycles of eight
+blocks, so that every kind of block occurs twice."""
 
 WILD = 1e6
 """Largest error [noise]; larger ones are clipped to it. Derived: its square, summed over a day at 1 kHz, is 1e20. An
@@ -147,6 +150,11 @@ class Data:
     def cut(self, duration: float) -> Data:
         """The first `duration` [s] of each run."""
         return self.changed(lambda run: run.cut(duration))
+
+    @property
+    def first_part(self) -> Data:
+        """The first part of each run: enough to tell what one more quantity promises, in a fraction of the time."""
+        return self.cut(FIRST_PART * self.scales.time)
 
     def changed(self, run_of: Callable[[Run], Run]) -> Data:
         """The same with each run replaced by the result of `run_of`."""

@@ -106,6 +106,11 @@ class Estimator:
         """The same for recordings cut where the shaft rests: the cost is smoother, the values are only nearly right."""
         return self.on(cut_at_rests(self.data))
 
+    @cached_property
+    def first_part(self) -> Estimator:
+        """The same for the first part of each run."""
+        return self.on(self.data.first_part)
+
     def on(self, data: Data) -> Estimator:
         """The same for other data."""
         return Estimator(data, self.nominal, self.over, self.discrepancy, self.unit)

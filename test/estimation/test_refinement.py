@@ -1,11 +1,11 @@
 """A second look finds the values that a descent over a rough cost has missed."""
 
 import pytest
-from support.recordings import NOMINAL, data_on, recording
+from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.estimation.refinement import FINEST, _evolved, refined
+from pierburg_ros.estimation.refinement import FINEST, _evolved, _landings, refined
 
 STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))
 
@@ -19,6 +19,27 @@ def test_reaches_the_noise_where_a_descent_stops_early() -> None:
     assert stopped.ratio > 2.0
     assert found.ratio < 1.03
     assert found.values["static_friction.breakaway_torque"] == pytest.approx(0.27, rel=0.03)
+
+
+@pytest.mark.search
+def test_begins_in_the_first_part_of_a_minute_in_closed_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaps, which need most simulations, are made there only."""
+    truth = {"static_friction.breakaway_torque": 0.22, "static_friction.stribeck_velocity": 0.05}
+    estimator = Estimator(data_on(recording_in_closed_loop(truth, duration=60.0)), NOMINAL)
+    start = {"static_friction.breakaway_torque": 0.242, "static_friction.stribeck_velocity": 0.04}
+    stopped = estimator.fit(STICTION, start)
+    leapt = []
+
+    def landings(where: Estimator, fit: Fit) -> list[dict[str, float]]:
+        leapt.append(where.data.duration)
+        return _landings(where, fit)
+
+    monkeypatch.setattr("pierburg_ros.estimation.refinement._landings", landings)
+    found = refined(estimator, stopped)
+    assert stopped.ratio > 1.2
+    assert found.ratio < 1.03
+    assert found.solution.residual.size == stopped.solution.residual.size
+    assert leapt == [estimator.first_part.data.duration]
 
 
 def test_never_makes_a_fit_worse() -> None:

@@ -44,11 +44,11 @@ def recording(
     return recording_under(duty, time, changes, random)
 
 
-def recording_in_closed_loop(changes: dict[str, float], seed: int = 0) -> Recording:
-    """24 s at 500 Hz under the PIFLC at modest duty, a new setpoint every 2 s; the valve as above."""
+def recording_in_closed_loop(changes: dict[str, float], seed: int = 0, duration: float = 24.0) -> Recording:
+    """At 500 Hz under the PIFLC at modest duty, a new setpoint every 2 s; the valve as above."""
     random = np.random.default_rng(seed)
-    time = np.arange(0.0, 24.0, 0.002)
-    setpoints = random.uniform(0.15, 1.4, 12)[(time / 2.0).astype(int)]
+    time = np.arange(0.0, duration, 0.002)
+    setpoints = random.uniform(0.15, 1.4, int(duration / 2.0))[(time / 2.0).astype(int)]
     run = simulate_runs(NOMINAL.with_values(changes), MODEST, setpoints[np.newaxis], noise=NOISE, seed=seed)
     return Recording("test.mcap", "hall_voltage", time, run.hall_voltage[0], Channel(time, run.duty[0]))
 

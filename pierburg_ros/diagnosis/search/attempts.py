@@ -10,7 +10,6 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.first_part import first_part
 from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.diagnosis.search.selection import adequate, alike, betters, tied
@@ -45,7 +44,6 @@ class Attempts:
         self.drifts = drifting(nominal)
         self.whole = Estimator(data, nominal)
         self.alone = Estimator(data, nominal, pool.map)
-        self.first_part = first_part(self.whole)
         self.fits: dict[Explanation, Fit] = {}
         self.expanded: set[Explanation] = set()
         self.stood: set[Explanation] = set()
@@ -122,7 +120,7 @@ class Attempts:
 
     def screened(self, seed: Fit) -> list[Candidate]:
         """The candidates with one quantity more than `seed` that have not been fitted yet."""
-        found = screened(seed, self.whole, self.first_part, self.drifts, self.pool, self.progress)
+        found = screened(seed, self.whole, self.drifts, self.pool, self.progress)
         return [candidate for candidate in found if candidate.explanation not in self.fits]
 
     def fit_most_promising(self, seeds: Sequence[Fit]) -> None:
@@ -141,7 +139,7 @@ class Attempts:
         self.tried += len(candidates)
         self.waiting = len(candidates)
         known = self.best_of_size(candidates[0].explanation.size)
-        leading = dict.fromkeys((self.whole, self.first_part), known.ratio if known else np.inf)
+        leading = dict.fromkeys((self.whole, self.whole.first_part), known.ratio if known else np.inf)
         ahead = winners(candidates, leading, self.pool, self.progress, most)
         fits = list(self.pool.map(lambda fit: self.add(fit.explanation, fit.values), ahead))
         stopped = [

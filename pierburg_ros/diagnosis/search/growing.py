@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from pierburg_ros.diagnosis.search.candidates import Addition, drifting, starts_of, with_drifts
-from pierburg_ros.diagnosis.search.first_part import first_part, takes_time, where_shown
 from pierburg_ros.diagnosis.search.linear import promised, promised_left
 from pierburg_ros.diagnosis.search.scored import Scored, estimator_beside, plausible, scored, strange
 from pierburg_ros.diagnosis.search.tried import Progress
@@ -18,6 +17,7 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
+from pierburg_ros.estimation.first_part import takes_time, where_shown
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
@@ -105,7 +105,7 @@ class _Way:
     @cached_property
     def quick(self) -> tuple[Estimator, Fit]:
         """Where a promise is evaluated unless it takes time: an estimator, and `base` there."""
-        return where_shown(self.base, self.estimator, first_part(self.estimator))
+        return where_shown(self.base, self.estimator)
 
     def promise(self, task: tuple[Addition, list[Start]]) -> _Promise | None:
         """What one linear step along an addition promises; None if it cannot be added."""

@@ -10,11 +10,11 @@ from concurrent.futures import Executor
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.stretches import forgotten
 from pierburg_ros.diagnosis.search.candidates import possible
-from pierburg_ros.diagnosis.search.first_part import takes_time, where_shown
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Ripple
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.first_part import takes_time, where_shown
 from pierburg_ros.estimation.least_squares import BRIEF
 
 AMPLITUDE = 0.0022
@@ -41,7 +41,6 @@ def ripples(estimator: Estimator) -> list[tuple[Variant, Ripple]]:
 
 def between_rests(
     whole: Estimator,
-    first: Estimator,
     variant: Variant,
     ripple: Ripple,
     bases: Mapping[Explanation, Fit],
@@ -51,7 +50,7 @@ def between_rests(
 
     The shaft rests where the ripple lets it. If it sets off at the wrong crest, everything after that is displaced, so
     a descent over a whole recording ends where one such moment is wrong. Between rests this does not happen, and the
-    `first` part of each recording will do if it shows the error. For the base with the lowest error, one descent starts
+    first part of each recording will do if it shows the error. For the base with the lowest error, one descent starts
     from the best phase of each rhythm that lowers this error. Bases with a change in mid-recording, or with an effect
     that remembers longer than a rest, are left out. If no rhythm lowers the error, the list is empty. The fits that are
     given are of `whole` recordings.
@@ -60,7 +59,7 @@ def between_rests(
     if not grown:
         return []
     nearest = min(grown.values(), key=lambda base: base.chi2)
-    rests = (whole if takes_time(variant) else where_shown(nearest, whole, first)[0]).between_rests
+    rests = (whole if takes_time(variant) else where_shown(nearest, whole)[0]).between_rests
     begins = [(explanation, rests.restated(base)) for explanation, base in grown.items()]
     held = f"{variant.effect}.{ripple.rhythm}" if ripple.whole else None
 

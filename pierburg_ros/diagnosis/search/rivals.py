@@ -99,8 +99,8 @@ def _take_over(attempts: Attempts, explanation: Explanation, fading: Variant, be
         effects = (*held, _faded(fading, best, share)) if share > 0.0 else held
         stage = Explanation(explanation.drifted, effects, explanation.changed)
         try:
-            slopes = attempts.first_part.at(stage, values).solution.jacobian
-            stage_fit = attempts.first_part.fit(stage, values, ROUNDS, slopes=slopes)
+            slopes = attempts.whole.first_part.at(stage, values).solution.jacobian
+            stage_fit = attempts.whole.first_part.fit(stage, values, ROUNDS, slopes=slopes)
         except InputError:
             continue
         if stage_fit.ratio > NEAR * best.ratio:

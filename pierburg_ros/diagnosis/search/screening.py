@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.diagnosis.search.candidates import Addition, expansions
-from pierburg_ros.diagnosis.search.first_part import takes_time, where_shown
 from pierburg_ros.diagnosis.search.linear import change_starts, promised, promised_left
 from pierburg_ros.diagnosis.search.selection import PROMISING, adequate
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.estimation.first_part import takes_time, where_shown
 
 Promised = tuple[float, dict[str, float]]
 """The chi2 that a linear step promises, and the start that it leads to."""
@@ -57,14 +57,13 @@ class Candidate:
 def screened(
     fit: Fit,
     whole: Estimator,
-    first_part: Estimator,
     drifts: tuple[str, ...],
     pool: Executor,
     progress: Callable[[str], None],
 ) -> list[Candidate]:
-    """Every addition to `fit` with its promise, on the `first_part` of each run if that shows the error left."""
+    """Every addition to `fit` with its promise, on the first part of each run if that shows the error left."""
     base = whole.restated(fit)
-    quick = where_shown(base, whole, first_part)
+    quick = where_shown(base, whole)
 
     def candidate(task: tuple[Explanation, tuple[Addition, list[Start]]]) -> Candidate:
         explanation, (addition, starts) = task

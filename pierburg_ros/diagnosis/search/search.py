@@ -253,7 +253,7 @@ class Search(Attempts):
             self.progress(f"{variant.label}, between rests")
             grown = ((canonical(begin.explanation.plus(variant), self.drifts), begin) for begin in begins)
             bases = {explanation: begin for explanation, begin in grown if explanation is not None}
-            fits = between_rests(self.whole, self.first_part, variant, ripple, bases, self.pool)
+            fits = between_rests(self.whole, variant, ripple, bases, self.pool)
             for fit in map(self.keep, fits):
                 begin = min(bases[fit.explanation], self.least_drifted(), key=lambda each: each.chi2)
                 worth = fit.ratio < NEARLY and far_below(fit, begin)

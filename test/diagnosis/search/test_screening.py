@@ -19,10 +19,10 @@ PRELOAD = Explanation(("spring_preload",))
 BOTH = {"sensor_lag.time_constant": 0.01, "spring_preload": 0.295}
 
 
-def candidates_on(data: Data, explanation: Explanation, glance: float = 24.0) -> list[Candidate]:
-    whole, first = Estimator(data, NOMINAL), Estimator(data.cut(glance), NOMINAL)
+def candidates_on(data: Data, explanation: Explanation) -> list[Candidate]:
+    whole = Estimator(data, NOMINAL)
     with ThreadPoolExecutor(2) as pool:
-        return screened(whole.fit(explanation), whole, first, drifting(NOMINAL), pool, lambda _: None)
+        return screened(whole.fit(explanation), whole, drifting(NOMINAL), pool, lambda _: None)
 
 
 @pytest.mark.parametrize("seed", [PRELOAD, Explanation((), (LAG,))], ids=lambda seed: seed.label)
@@ -60,16 +60,15 @@ def test_beside_what_accounts_for_all_only_what_promises_a_gain_is_fitted() -> N
     assert all(candidate.starts for candidate in drifted if candidate.addition == "spring_preload")
 
 
-def test_what_shows_late_is_looked_at_in_whole_recordings() -> None:
+def test_what_shows_late_is_looked_at_in_whole_recordings(monkeypatch: pytest.MonkeyPatch) -> None:
     """A weaker supply from 8 s on leaves no mark in the first four seconds, one from the start does."""
+    monkeypatch.setattr("pierburg_ros.estimation.data.FIRST_PART", 4.0 / NOMINAL.scales.time)
     plain = data_on(recording({}, duration=12.0))
     (run,) = plain.runs
     weak = run.simulated(NOMINAL.with_values({"supply_voltage": 12.5}))
     for begin, size in ((8.0, run.time.size), (0.0, 2000)):
         made = recording({}, duration=12.0)
         object.__setattr__(made, "measured", np.where(run.time < begin, made.measured, weak))
-        looked = {
-            candidate.base.solution.residual.size for candidate in candidates_on(data_on(made), Explanation(), 4.0)
-        }
+        looked = {candidate.base.solution.residual.size for candidate in candidates_on(data_on(made), Explanation())}
         assert max(looked) == pytest.approx(0.75 * 6000, rel=0.02)
         assert min(looked) == pytest.approx(0.75 * size, rel=0.02 if size == 6000 else 0.3)
