@@ -5,7 +5,7 @@ from support.recordings import NOMINAL, data_on, recording, recording_in_closed_
 
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.estimation.refinement import FINEST, _evolved, _landings, refined
+from pierburg_ros.estimation.refinement import FINEST, SHORTEST, _evolved, _landings, refined
 
 STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))
 
@@ -22,8 +22,8 @@ def test_reaches_the_noise_where_a_descent_stops_early() -> None:
 
 
 @pytest.mark.search
-def test_begins_in_the_first_part_of_a_minute_in_closed_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leaps, which need most simulations, are made there only."""
+def test_leaps_in_a_short_part_of_a_minute_in_closed_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaps need most of the simulations, and few slips can go wrong there."""
     truth = {"static_friction.breakaway_torque": 0.22, "static_friction.stribeck_velocity": 0.05}
     estimator = Estimator(data_on(recording_in_closed_loop(truth, duration=60.0)), NOMINAL)
     start = {"static_friction.breakaway_torque": 0.242, "static_friction.stribeck_velocity": 0.04}
@@ -39,7 +39,8 @@ def test_begins_in_the_first_part_of_a_minute_in_closed_loop(monkeypatch: pytest
     assert stopped.ratio > 1.2
     assert found.ratio < 1.03
     assert found.solution.residual.size == stopped.solution.residual.size
-    assert leapt == [estimator.first_part.data.duration]
+    assert len(leapt) == 1
+    assert leapt[0] <= 15.0
 
 
 def test_never_makes_a_fit_worse() -> None:
@@ -62,3 +63,21 @@ def test_a_population_goes_on_from_where_slopes_say_nothing() -> None:
     assert stopped.ratio > 2.0
     assert found.ratio < 1.03
     assert found.values == _evolved(estimator, estimator.restated(stopped)).values
+
+
+def test_the_part_grows_unless_an_effect_takes_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Heat says nothing in the first seconds, and its numbers would wander off there."""
+    heating = Explanation((), (Variant("thermal_resistance", ("thermal_resistance", "heat_capacity")),))
+    estimator = Estimator(data_on(recording({"spring_preload": 0.3}, duration=40.0)), NOMINAL)
+    shortest = SHORTEST * NOMINAL.scales.time
+    for explanation, parts in ((STICTION, [shortest, 2.0 * shortest, 40.0]), (heating, [40.0])):
+        searched = []
+
+        def remember(where: Estimator, fit: Fit, leaping: bool, searched: list[tuple[float, bool]] = searched) -> Fit:
+            searched.append((where.data.duration, leaping))
+            return fit
+
+        monkeypatch.setattr("pierburg_ros.estimation.refinement._searched", remember)
+        refined(estimator, estimator.at(explanation))
+        assert [leaping for _, leaping in searched] == [True] + [False] * (len(parts) - 1)
+        assert [duration for duration, _ in searched] == pytest.approx(parts, abs=0.01)
