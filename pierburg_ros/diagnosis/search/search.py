@@ -245,9 +245,12 @@ class Search(Attempts):
         if size in self.rippled:
             return
         self.rippled.add(size)
-        # on the nominal model as well: drifts that have adapted to a ripple hide it
-        groups = (seeds, self.of_size(0)) if size == 2 else (seeds,)
-        for begins, (variant, ripple) in itertools.product(groups, ripples(self.whole)):
+        # an effect that has adapted to a ripple hides it, and so may drifts: hence without effects, and on nominal
+        nearest = min(seeds, key=lambda seed: seed.chi2)
+        drifted = [seed for seed in seeds if not seed.explanation.variants]
+        groups = [drifted, seeds] if nearest.explanation.variants else [seeds]
+        groups += [self.of_size(0)] if size == 2 else []
+        for begins, (variant, ripple) in itertools.product(filter(None, groups), ripples(self.whole)):
             if self.completed(size) or self.completed(1):
                 return
             self.progress(f"{variant.label}, between rests")

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -219,6 +220,24 @@ def test_a_ripple_is_refined_where_it_comes_near(
     monkeypatch.setattr(empty, "refine_alone", again.append)
     empty._fit_ripples([empty.keep(made_up(NOTHING, 9.0, NOMINAL))])
     assert again == ([found] if refined else [])
+
+
+@pytest.mark.parametrize(("effect", "expected"), [(6.0, [1, 2, 1]), (8.0, [2, 1])])
+def test_an_effect_that_has_adapted_to_a_ripple_does_not_hide_it(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, effect: float, expected: list[int]
+) -> None:
+    """If an effect leads, the drifts are looked at without it first; the nominal model comes last in any case."""
+    grown = list[int]()
+
+    def between_rests(whole: Any, variant: Variant, ripple: Any, bases: dict[Explanation, Fit], pool: Any) -> list[Fit]:
+        grown.append(len(bases))
+        return []
+
+    monkeypatch.setattr(module, "ripples", lambda _: [(Variant("cogging_torque", ("amplitude",)), None)])
+    monkeypatch.setattr(module, "between_rests", between_rests)
+    empty.keep(made_up(NOTHING, 9.0, NOMINAL))
+    empty._fit_ripples([made_up(FRICTION, 7.0, NOMINAL), made_up(ONES[0], effect, NOMINAL)])
+    assert grown == expected
 
 
 def test_what_does_not_account_for_all_ends_no_growth_of_what_is_smaller(short: Data, pool: Executor) -> None:
