@@ -245,7 +245,7 @@ class Search(Attempts):
         if size in self.rippled:
             return
         self.rippled.add(size)
-        # an effect that has adapted to a ripple hides it, and so may drifts: hence without effects, and on nominal
+        # an effect or a drift that has adapted to a ripple hides it: drifts without effects, and the nominal model too
         nearest = min(seeds, key=lambda seed: seed.chi2)
         drifted = [seed for seed in seeds if not seed.explanation.variants]
         groups = [drifted, seeds] if nearest.explanation.variants else [seeds]
