@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -25,6 +26,7 @@ from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.beam import Beam
+from pierburg_ros.diagnosis.search.forms import other_forms
 from pierburg_ros.diagnosis.search.found import Found, search, settled_on
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.supported import confirmed_beside
@@ -146,12 +148,14 @@ def examined(
 def explains_all(named: Standing, found: Found) -> Fit | None:
     """The explanation that stands beside a remainder, fitted without one; None if it is not adequate.
 
-    A search that was stopped may not have tried it.
+    A search that was stopped may not have tried it. Other forms of its effects are tried as well: the form was chosen
+    before all quantities were there.
     """
-    if named.base is None or found.estimator.restated(named.base).ratio >= EXPLAINED:
+    if named.base is None:
         return None
-    fit = found.estimator.fit(named.base.explanation, named.base.values)
-    return fit if adequate(fit) else None
+    estimator = found.estimator
+    own = estimator.fit(named.base.explanation, named.base.values)
+    return next(filter(adequate, itertools.chain([own], other_forms(estimator, own))), None)
 
 
 def unseen_confirm(found: Found) -> Literal["all", "the disturbance", "nothing"]:

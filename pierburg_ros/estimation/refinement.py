@@ -43,10 +43,10 @@ AGAIN = 0.5
 shows that the search began in another valley; not varied."""
 NEARLY = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early: a population continues,
-and a search does not resign. The most likely explanation may have stopped too early up to this multiple of the smallest
-error. Chosen: descents to true explanations stopped at 1.25 to 16 times the noise (n = 2 trials), one most likely at
-1.9 times the smallest error. A search resigned at 1.18 times the noise, and its truth was found 18 s later; not
-varied."""
+and a search does not resign. Between rests, the end of a search in a long recording that lacks more than slips. The
+most likely explanation may have stopped too early up to this multiple of the smallest error. Chosen: descents to true
+explanations stopped at 1.25 to 16 times the noise (n = 2 trials), one most likely at 1.9 times the smallest error. A
+search resigned at 1.18 times the noise, and its truth was found 18 s later; not varied."""
 POINTS = 4
 """Points of a population for each quantity. Measured: n = 3 searches with three quantities, along whole recordings of
 static friction beside a drift. With 12 points, each comes from 1.12 times the noise to 1.02, where the true values are.
@@ -68,18 +68,21 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
 
     The search begins in a short part of the recordings, in which few slips can go wrong. The part grows, and each
     search begins at the better one of `fit` and what the last part has shown. Parts that `fit` accounts for are passed
-    over. If an effect takes time or a parameter changes in mid-recording, whole recordings are searched at once.
+    over. If an effect takes time or a parameter changes in mid-recording, whole recordings are searched at once. The
+    search ends where it shows that no slip is to blame: `fit` then lacks something else.
     """
     explanation, found = fit.explanation, None
     late = explanation.changed is not None or any(takes_time(variant) for variant in explanation.variants)
-    for part in (*(() if late else _parts(estimator)), estimator):
+    parts = [*([] if late else _parts(estimator)), estimator]
+    for part in parts:
         begin = part.restated(fit)
         if found is not None:
             begin = min(begin, part.fit(explanation, found.values), key=lambda each: each.chi2)
         if begin.ratio > EXPLAINED or part is estimator:
-            found = _searched(part, begin, leaping=found is None)
-    assert found is not None
-    return replace(found, refined=True)
+            found = _searched(part, begin, leaping=found is None, long=part in parts[-2:])
+            if found is None:
+                break
+    return replace(found or fit, refined=True)
 
 
 def _parts(estimator: Estimator) -> Iterator[Estimator]:
@@ -90,17 +93,23 @@ def _parts(estimator: Estimator) -> Iterator[Estimator]:
         duration *= 2.0
 
 
-def _searched(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
+def _searched(estimator: Estimator, fit: Fit, leaping: bool, long: bool) -> Fit | None:
     """`fit`, or a better one of the same explanation, by descents from near and, if `leaping`, from far.
 
     Where the shaft rests, the search starts between its rests: far from the minimum only this cost is smooth enough.
-    Near the noise, single slips make steps in the cost, and a population of points searches for the lowest.
+    There a slip displaces nothing that follows. If the recordings are `long`, and the search comes near the noise there
+    but not down to it, the explanation lacks more than slips at the right moments, and the result is None. Near the
+    noise, single slips make steps in the cost of whole recordings, and a population of points searches for the lowest.
     """
     if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
         return _descended(estimator, fit, leaping)
-    lower = _descended_by_rests(estimator, fit, leaping)
+    smooth = _descended_between_rests(estimator, fit, leaping)
+    if long and EXPLAINED < smooth.ratio < NEARLY:
+        return None
+    lower = _descended_from(estimator, fit, smooth)
     while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
-        fit, lower = lower, _descended_by_rests(estimator, lower, leaping=False)
+        fit = lower
+        lower = _descended_from(estimator, fit, _descended_between_rests(estimator, fit, leaping=False))
     near = EXPLAINED < lower.ratio < NEARLY
     return _evolved(estimator, lower) if near else lower
 
@@ -110,10 +119,14 @@ def lowered(estimator: Estimator, fit: Fit) -> Fit:
     return _descended(estimator, fit, leaping=False) if fit.explanation.names else fit
 
 
-def _descended_by_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
-    """`fit`, or a lower one, by descents between rests first and then along whole recordings."""
+def _descended_between_rests(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
+    """`fit`, or a lower one, by descents between rests."""
     rests = estimator.between_rests
-    smooth = _descended(rests, rests.fit(fit.explanation, fit.values), leaping)
+    return _descended(rests, rests.fit(fit.explanation, fit.values), leaping)
+
+
+def _descended_from(estimator: Estimator, fit: Fit, smooth: Fit) -> Fit:
+    """The better one of `fit` and one from where `smooth` is between rests, or a lower one by descents nearby."""
     nearest = min(fit, estimator.fit(fit.explanation, smooth.values), key=lambda each: each.chi2)
     return _descended(estimator, nearest, leaping=False)
 

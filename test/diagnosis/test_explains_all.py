@@ -14,6 +14,7 @@ from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 RUBS = Explanation(variants=(Variant("load_dependent_friction", ("coefficient",)),))
+CUBIC = Variant("nonlinear_spring", ("cubic_stiffness",))
 TRUE = {"load_dependent_friction.coefficient": 0.05}
 
 
@@ -40,8 +41,36 @@ def test_what_stands_and_leaves_nothing_is_the_verdict(stopped):
     assert conclude(settled).verdict == "missing_physics"
 
 
+def test_values_from_beside_a_remainder_are_fitted_first(stopped):
+    fit = explains_all(standing(stopped, {"load_dependent_friction.coefficient": 0.02}), stopped)
+    assert fit is not None
+    assert fit.values["load_dependent_friction.coefficient"] == pytest.approx(0.05, rel=0.01)
+
+
 def test_what_leaves_something_stays_beside_a_remainder(stopped):
-    assert explains_all(standing(stopped, {"load_dependent_friction.coefficient": 0.02}), stopped) is None
+    bends = Explanation(variants=(CUBIC,))
+    named = Standing(stopped.estimator, stopped.estimator.at(bends, {"nonlinear_spring.cubic_stiffness": 0.01}))
+    assert explains_all(named, stopped) is None
+
+
+def test_another_form_of_an_effect_may_explain_all():
+    """A knee was chosen before the lag was there; with it, a cube leaves nothing."""
+    true = {"nonlinear_spring.cubic_stiffness": 0.03, "sensor_lag.time_constant": 0.01}
+    data = data_on(recording(true, duration=20.0))
+    found = found_among(data, made_up(Explanation(), 5.0, NOMINAL))
+    lag = Variant("sensor_lag", ("time_constant",))
+    knee = Explanation(variants=(Variant("nonlinear_spring", ("knee_stiffness", "knee_angle")), lag))
+    begin = {
+        "nonlinear_spring.knee_stiffness": 0.08,
+        "nonlinear_spring.knee_angle": 0.6,
+        "sensor_lag.time_constant": 0.01,
+    }
+    own = found.estimator.fit(knee, begin)
+    assert own.ratio > 1.5
+    fit = explains_all(Standing(found.estimator, own), found)
+    assert fit is not None
+    assert fit.explanation.variants == (CUBIC, lag)
+    assert fit.values["nonlinear_spring.cubic_stiffness"] == pytest.approx(0.03, rel=0.01)
 
 
 def test_where_nothing_stands_nothing_is_settled(stopped):

@@ -1,6 +1,7 @@
 """A second look finds the values that a descent over a rough cost has missed."""
 
 import pytest
+from support.fits import made_up
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -73,7 +74,9 @@ def test_the_part_grows_unless_an_effect_takes_time(monkeypatch: pytest.MonkeyPa
     for explanation, parts in ((STICTION, [shortest, 2.0 * shortest, 40.0]), (heating, [40.0])):
         searched = []
 
-        def remember(where: Estimator, fit: Fit, leaping: bool, searched: list[tuple[float, bool]] = searched) -> Fit:
+        def remember(
+            where: Estimator, fit: Fit, leaping: bool, long: bool, searched: list[tuple[float, bool]] = searched
+        ) -> Fit:
             searched.append((where.data.duration, leaping))
             return fit
 
@@ -81,3 +84,25 @@ def test_the_part_grows_unless_an_effect_takes_time(monkeypatch: pytest.MonkeyPa
         refined(estimator, estimator.at(explanation))
         assert [leaping for _, leaping in searched] == [True] + [False] * (len(parts) - 1)
         assert [duration for duration, _ in searched] == pytest.approx(parts, abs=0.01)
+
+
+@pytest.mark.parametrize(("left", "durations"), [(3.0, [6.0]), (1.0, [6.0, 12.0, 40.0]), (9.0, [6.0, 12.0, 40.0])])
+def test_what_comes_near_the_noise_between_rests_but_not_to_it_lacks_more_than_slips(
+    monkeypatch: pytest.MonkeyPatch, left: float, durations: list[float]
+) -> None:
+    """In a short part it may only have stopped too early. Between rests so much is left; whole recordings tell more."""
+    estimator = Estimator(data_on(recording({"spring_preload": 0.3}, duration=40.0)), NOMINAL)
+    fit, searched = estimator.at(STICTION), []
+
+    def between(where: Estimator, fit: Fit, leaping: bool) -> Fit:
+        return made_up(STICTION, left, NOMINAL)
+
+    def along(where: Estimator, fit: Fit, smooth: Fit) -> Fit:
+        searched.append(where.data.duration)
+        return where.at(STICTION)
+
+    monkeypatch.setattr("pierburg_ros.estimation.refinement._descended_between_rests", between)
+    monkeypatch.setattr("pierburg_ros.estimation.refinement._descended_from", along)
+    again = refined(estimator, fit)
+    assert again.refined and again.values == fit.values
+    assert searched == pytest.approx(durations, abs=0.01)

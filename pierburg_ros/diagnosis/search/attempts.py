@@ -48,6 +48,7 @@ class Attempts:
         self.expanded: set[Explanation] = set()
         self.stood: set[Explanation] = set()
         self.tried = self.waiting = 0
+        self.none_with_all_drifts = False
         self.pool = pool
 
     @property
@@ -66,6 +67,12 @@ class Attempts:
         if known is None or fit.chi2 < known.chi2:
             self.fits[fit.explanation] = fit
         return self.fits[fit.explanation]
+
+    def forget_deeper(self) -> None:
+        """Forget the explanations with effects that have more quantities than the beam is deep."""
+        for explanation in list(self.fits):
+            if explanation.variants and explanation.size > self.beam.depth:
+                del self.fits[explanation]
 
     def of_size(self, size: int) -> list[Fit]:
         """The fits of explanations with `size` quantities, the best first."""
@@ -112,11 +119,16 @@ class Attempts:
         if seed.explanation in self.expanded:
             return []
         self.expanded.add(seed.explanation)
-        candidates = self.screened(seed)
+        candidates = [each for each in self.screened(seed) if not self._refuted(each.explanation)]
         known = self.best_of_size(seed.explanation.size + 1)
         if known is not None and adequate(known) and not adequate(seed):
             candidates = most_promising(candidates, self.beam.ahead // 3)
         return self.race(candidates)
+
+    def _refuted(self, explanation: Explanation) -> bool:
+        """Whether an explanation has at most one effect, and is not adequate even with all drifts added to it."""
+        smooth = not jumps(explanation) and len(explanation.variants) <= 1
+        return self.none_with_all_drifts and smooth and explanation.changed is None
 
     def screened(self, seed: Fit) -> list[Candidate]:
         """The candidates with one quantity more than `seed` that have not been fitted yet."""

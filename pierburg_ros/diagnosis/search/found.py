@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from pierburg_ros.deadline import Deadline
@@ -12,7 +11,7 @@ from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.needed import needed
 from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
-from pierburg_ros.diagnosis.search.search import Resigned, Search
+from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import adequate, overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.together import recalibrated
@@ -120,13 +119,15 @@ def _grown(
     begun: list[Search],
 ) -> Search:
     """The search with its rivals fitted; each search is added to `begun` at its start, for an interrupted caller."""
-    with suppress(Resigned), workers(jobs, deadline) as pool:
+    with workers(jobs, deadline) as pool:
         begun.append(Search(data, nominal, pool, progress, beam))
         if overlooks(begun[-1].run(), begun[-1].whole):
             begun.append(Search(with_validation(data), nominal, pool, progress, beam))
             begun[-1].run()
-        if not begun[-1].resigned:
-            fit_rivals(begun[-1], begun[-1].preferred())
+        best = begun[-1].preferred()
+        # what could replace an effect decides nothing if a remainder could
+        if not begun[-1].resigned and needed(best, begun[-1], pool) is best:
+            fit_rivals(begun[-1], best)
             pruned(begun[-1])
     return begun[-1]
 
@@ -140,7 +141,6 @@ def _checked(progress: Progress, deadline: Deadline, begun: Sequence[Search]) ->
         deadline.check()
         done += 1
         searching = begun[-1]
-        searching.check()
         searching.waiting = max(searching.waiting - 1, 0)
         ratios = [fit.ratio for fit in list(searching.fits.values())]
         best = f"error {min(ratios):.3g} times the noise" if ratios else ""

@@ -9,6 +9,7 @@ from concurrent.futures import Executor
 
 from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
 from pierburg_ros.diagnosis.evidence.stretches import forgotten
+from pierburg_ros.diagnosis.search.attempts import far_below
 from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Ripple
@@ -52,8 +53,8 @@ def between_rests(
     a descent over a whole recording ends where one such moment is wrong. Between rests this does not happen, and the
     first part of each recording will do if it shows the error. For the base with the lowest error, one descent starts
     from the best phase of each rhythm that lowers this error. Bases with a change in mid-recording, or with an effect
-    that remembers longer than a rest, are left out. If no rhythm lowers the error, the list is empty. The fits that are
-    given are of `whole` recordings.
+    that remembers longer than a rest, are left out. If no rhythm leaves far less error between rests, nothing is given.
+    The fits that are given are of `whole` recordings.
     """
     grown = {e: base for e, base in bases.items() if e.changed is None and forgotten(e.effects)}
     if not grown:
@@ -75,9 +76,9 @@ def between_rests(
     rhythms = ripple.rhythms(missing_torque(whole.data, whole.data.longest, base.model))
     starts = _scanned(rests, variant, ripple, rhythms, explanation, base, pool)
     found = list(pool.map(lambda start: descended(explanation, {**base.values, **start}), starts))
-    if not found:
+    lowest = min(found, key=lambda fit: fit.chi2, default=None)
+    if lowest is None or not far_below(lowest, base):
         return []
-    lowest = min(found, key=lambda fit: fit.chi2)
     own = {name: value for name, value in lowest.values.items() if name.startswith(f"{variant.effect}.")}
     others = [(e, other) for e, other in begins if e != explanation]
     found = [lowest, *pool.map(lambda pair: descended(pair[0], {**pair[1].values, **own}), others)]

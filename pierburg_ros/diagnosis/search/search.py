@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 
@@ -24,17 +23,6 @@ from pierburg_ros.estimation.explanation import Explanation, canonical, jumps
 from pierburg_ros.estimation.refinement import NEARLY
 from pierburg_ros.plant import Model
 
-AGAIN = 1.5
-"""Number of trials that a resigning search makes after it has evaluated the most likely explanation beside a remainder,
-as a multiple of the trials before. Measured: static friction with a drift, of 20 s, is found after 0.93 (n = 1
-recording, counted three times, each the same). Of n = 36 trials with two effects, a change, or an effect whose cost is
-rough, 35 ended before that evaluation, 34 of them right. Half as much again is for other processors, whose rounding
-leads elsewhere."""
-
-
-class Resigned(BaseException):
-    """The search has gone on in vain for long enough: like `OutOfTime`, this waits for nothing."""
-
 
 class Search(Attempts):
     """The order of the trials: cheap and frequent explanations come first."""
@@ -47,7 +35,6 @@ class Search(Attempts):
         self.beside: Beside | None = None
         self.all_drifted = False
         self.resigned = False
-        self._told, self._until = 0, math.inf
 
     def run(self) -> Fit:
         """Grow explanations until the best is adequate or cannot be bettered; gives the best one.
@@ -62,22 +49,13 @@ class Search(Attempts):
             if leading is None:
                 break
             self._grow(leading)
+            if self.resigned:
+                break
             best = pruned(self)
             if best.explanation.size <= size and adequate(best):
                 break
             size = max(size + 1, best.explanation.size if adequate(best) else 0)
         return best
-
-    def check(self) -> None:
-        """Count one more trial; raise `Resigned` once the trials that `AGAIN` allows have been made.
-
-        It is not raised if an adequate explanation is known by then: that one must be compared with others. Trials are
-        counted, not timed: a verdict must not depend on how fast the machine is.
-        """
-        self._told += 1
-        if self._told > self._until and not any(adequate(fit) for fit in list(self.fits.values())):
-            self.resigned = True
-            raise Resigned
 
     def _grow(self, best: Fit) -> None:
         """Fit explanations with one quantity more than `best`, the cheap way first, until one is adequate.
@@ -100,6 +78,10 @@ class Search(Attempts):
             if self.resigned or self._drifts_expanded(seeds):
                 return
             self.refine_leading(size)
+            if self.beam.resigns:
+                self.refine_leading(size + 1)
+                self.resigned = not (self.completed(size) or self.completed(size + 1))
+                return
             best = self.preferred(size)
             if names_all(best):
                 return
@@ -142,16 +124,19 @@ class Search(Attempts):
     def _followed(self, best: Fit) -> bool:
         """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
 
-        If so, no other explanation of its size is tried. A leading explanation near the noise is not grown: it may only
-        have stopped too early, or another may have.
+        If so, no other explanation of its size is tried. A leading explanation near the noise is not grown if its
+        events jump: it may only have stopped too early. Ripples come first: they take less time than all else.
         """
         size = best.explanation.size + 1
         leading = self.best_of_size(size)
         if leading is None or size == self.beam.depth:
             return False
-        if leading.ratio < NEARLY or not far_below(leading, best):
+        early = jumps(leading.explanation) and leading.ratio < NEARLY
+        if early or not far_below(leading, best):
             return False
-        self.expand(leading)
+        self._fit_ripples([leading])
+        if not self.completed(size + 1):
+            self.expand(leading)
         return self.completed(size + 1)
 
     def _all_drift(self) -> bool:
@@ -159,7 +144,8 @@ class Search(Attempts):
         if self.all_drifted or self.exhausted:
             return False
         self.all_drifted = True
-        return drift_together(self)
+        self.none_with_all_drifts = not drift_together(self)
+        return not self.none_with_all_drifts
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
         """Expand those of the `seeds` that have no effect, before any expensive step; gives whether to end there.
@@ -217,7 +203,6 @@ class Search(Attempts):
         """
         if self.beside is not None:
             return False
-        before = self._told
         self.beside = supported(self.data, self.nominal, list(self.fits.values()), self.pool, self.progress)
         reached = self.beside.reached.fit
         in_reach = reached.explanation.size <= self.beam.depth
@@ -231,8 +216,8 @@ class Search(Attempts):
             if adequate(self.fits[reached.explanation]):
                 return True
         if self.beam.resigns:
-            self._until = self._told + AGAIN * before
-            self.resigned = in_vain or not jumps(self.nearest().explanation)
+            nearest = self.nearest()
+            self.resigned = in_vain or nearest.refined or not jumps(nearest.explanation)
         return False
 
     def _least(self) -> float:

@@ -15,6 +15,7 @@ from scipy.linalg import qr
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
+from pierburg_ros.diagnosis.search.needed import needed
 from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant, without
@@ -32,7 +33,8 @@ Begun = tuple[Explanation, dict[str, float]]
 def drift_together(attempts: Attempts) -> bool:
     """Let all parameters drift that recordings distinguish; gives whether an adequate explanation is found.
 
-    Effects are added as long as each leaves far less error. Then only as many parameters drift as have to.
+    Effects are added as long as each leaves far less error. Then only as many parameters drift as have to. If a
+    remainder of any shape could replace one of the effects, they have only adapted to it, and are forgotten.
     """
     best = attempts.keep(recalibrated(attempts, attempts.pool))
     while not adequate(best):
@@ -40,6 +42,9 @@ def drift_together(attempts: Attempts) -> bool:
         if not adequate(larger) and not far_below(larger, best):
             return False
         best = larger
+    if needed(best, attempts, attempts.pool) is not best:
+        attempts.forget_deeper()
+        return False
     _in_the_place_of_two(_with_fewer(best, attempts), attempts)
     return True
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
 
@@ -18,7 +17,7 @@ from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.search import Resigned, Search
+from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import TIED, adequate
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.weighing import Supported
@@ -175,20 +174,24 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
     assert [seed for seed in found.seeds if seed.size == 1] == [*drifts, ONES[0]]
 
 
-@pytest.mark.parametrize(("left", "second"), [(14.0, PAIRS[0]), (16.0, ONES[0]), (4.0, ONES[0])])
+@pytest.mark.parametrize(
+    ("place", "left", "second"), [(0, 14.0, 0), (0, 16.0, None), (0, 4.0, 0), (3, 14.0, 3), (3, 4.0, None)]
+)
 def test_what_leads_by_far_is_grown_before_others_of_its_size(
-    short: Data, pool: Executor, left: float, second: Explanation
+    short: Data, pool: Executor, place: int, left: float, second: int | None
 ) -> None:
-    """By less, or near the noise, where it may only have stopped too early, it waits."""
-    triple = PAIRS[0].plus(ONES[3].variants[0])
+    """By less it waits, and so it does near the noise if events jump: then it may only have stopped too early."""
+    pair = PAIRS[place]
+    triple = pair.plus(ONES[1].variants[0])
 
     class Leading(Grown):
         def fit_most_promising(self, seeds: object) -> None:
-            self.add(PAIRS[0])
+            self.add(pair)
 
-    found = Leading(short, pool, {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, PAIRS[0]: left, triple: 0.99}, Beam())
+    found = Leading(short, pool, {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, pair: left, triple: 0.99}, Beam())
     assert found.run().explanation == triple
-    assert found.seeds[:2] == [NOTHING, second]
+    assert found.seeds[:2] == [NOTHING, ONES[0] if second is None else PAIRS[second]]
+    assert (3 in found.before_ripples) == (second is not None), "ripples are looked for on top of it"
 
 
 def test_ripples_wait_for_promising_pairs_and_come_before_drifts_are_grown(short: Data, pool: Executor) -> None:
@@ -275,25 +278,33 @@ STICKS, LAGS = (Explanation((), (Variant(one, ("x",)),)) for one in ("static_fri
 
 
 @pytest.mark.parametrize(
-    ("nearest", "left", "beside", "resigned"),
+    ("nearest", "refined", "left", "beside", "resigned"),
     [
-        (STICKS, 5000.0, 30.0, True),
-        (STICKS, 100.0, 30.0, False),
-        (STICKS, 5000.0, 3.0, False),
-        (STICKS, 5000.0, 1.0, False),
-        (LAGS, 100.0, 30.0, True),
-        (LAGS, 100.0, 3.0, True),
-        (LAGS, 100.0, 1.0, False),
+        (STICKS, False, 5000.0, 30.0, True),
+        (STICKS, False, 100.0, 30.0, False),
+        (STICKS, False, 5000.0, 3.0, False),
+        (STICKS, True, 5000.0, 3.0, True),
+        (STICKS, True, 5000.0, 1.0, False),
+        (LAGS, False, 100.0, 30.0, True),
+        (LAGS, False, 100.0, 3.0, True),
+        (LAGS, False, 100.0, 1.0, False),
     ],
 )
-def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_no_event_jumps(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, nearest: Explanation, left: float, beside: float, resigned: bool
+def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_no_other_minimum_is_near(
+    empty: Search,
+    monkeypatch: pytest.MonkeyPatch,
+    nearest: Explanation,
+    refined: bool,
+    left: float,
+    beside: float,
+    resigned: bool,
 ) -> None:
     """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted by itself, leaves `beside` noises."""
     reached = made_up(nearest, 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
-    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, beside, NOMINAL)))
+    fitted = replace(made_up(nearest, beside, NOMINAL), refined=refined)
+    monkeypatch.setattr(empty, "add", lambda *_: empty.keep(fitted))
     monkeypatch.setattr(empty, "refine", lambda _: None)
     empty.beam = Beam(resigns=True)
     assert empty._likeliest_accounts_for_all() == (beside == 1.0)
@@ -301,35 +312,42 @@ def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_no_event_jum
     assert not empty._likeliest_accounts_for_all(), "asked once"
 
 
-@pytest.mark.parametrize(
-    ("resigns", "left", "further", "resigned"),
-    [(True, 3.0, 31, True), (True, 1.0, 31, False), (True, 3.0, 30, False), (False, 3.0, 31, False)],
-)
-def test_it_resigns_after_as_much_work_as_it_had_done_before_it_asked(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, resigns: bool, left: float, further: int, resigned: bool
+def test_a_search_that_resigns_ends_where_drifts_have_been_grown(short: Data, pool: Executor) -> None:
+    """Unless one of them accounts for all, neither effects are grown nor pairs."""
+
+    class Rough(Grown):
+        def _likeliest_accounts_for_all(self) -> bool:
+            return False
+
+    def grown(ratios: dict[Explanation, float], resigns: bool) -> Rough:
+        found = Rough(short, pool, ratios, Beam(resigns=resigns))
+        found.run()
+        return found
+
+    ratios = {NOTHING: 9.0, FRICTION: 7.0, ONES[0]: 6.0, PAIRS[0]: 2.0}
+    assert grown(ratios, resigns=True).seeds == [NOTHING, FRICTION]
+    assert grown(ratios, resigns=False).seeds[:3] == [NOTHING, FRICTION, ONES[0]]
+    found = grown({**ratios, PAIRS[0]: 0.99}, resigns=True)
+    assert found.preferred().explanation == PAIRS[0]
+    assert not found.resigned
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_one_smooth_effect_that_needs_more_than_all_drifts_is_not_tried_beside_fewer(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, together: bool
 ) -> None:
-    """After twenty trials it is asked, which takes fifty, and then tries further; the best leaves so much."""
-    reached = made_up(STICKS, left, NOMINAL)
-    scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), reached.solution.residual.size)
-
-    def tried(times: int) -> None:
-        for _ in range(times):
-            empty.check()
-
-    def answered(*_: object) -> Beside:
-        tried(50)
-        return Beside(scored, 10_000.0, Supported(NOMINAL, scored, {}))
-
-    monkeypatch.setattr(module, "supported", answered)
-    monkeypatch.setattr(module, "AGAIN", 1.5)
-    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, left, NOMINAL)))
-    monkeypatch.setattr(empty, "refine", lambda _: None)
-    empty.beam = Beam(resigns=resigns)
-    tried(20)
-    empty._likeliest_accounts_for_all()
-    with pytest.raises(Resigned) if resigned else nullcontext():
-        tried(further)
-    assert empty.resigned == resigned
+    """Two effects are, events that jump, and a change in mid-recording."""
+    two = Explanation(("spring_preload",), (*LAGS.variants, Variant("supply_sag", ("x",))))
+    change = Explanation((), LAGS.variants, "spring_preload")
+    explanations = [LAGS, PAIRS[0], STICKS, two, change, FRICTION]
+    base, raced = empty.keep(made_up(NOTHING, 9.0, NOMINAL)), list[Explanation]()
+    candidates = [Candidate(each, LAG, empty.whole, base, ()) for each in explanations]
+    monkeypatch.setattr(empty, "screened", lambda _: candidates)
+    monkeypatch.setattr(empty, "race", lambda given: raced.extend(each.explanation for each in given))
+    monkeypatch.setattr(module, "drift_together", lambda _: together)
+    assert empty._all_drift() == together
+    empty.expand(base)
+    assert raced == (explanations if together else [STICKS, two, change])
 
 
 @pytest.mark.parametrize(
