@@ -34,7 +34,10 @@ refinement costs up to 18 descents; not varied."""
 
 
 class Attempts:
-    """All explanations tried so far, each with its best fit, and the means to try more."""
+    """All explanations tried so far, each with its best fit, and the means to try more.
+
+    `with_all_drifts` says whether an explanation is adequate where all parameters drift, None while that is not known.
+    """
 
     def __init__(self, data: Data, nominal: Model, pool: Executor, progress: Progress, beam: Beam) -> None:
         self.data = data
@@ -48,7 +51,7 @@ class Attempts:
         self.expanded: set[Explanation] = set()
         self.stood: set[Explanation] = set()
         self.tried = self.waiting = 0
-        self.none_with_all_drifts = False
+        self.with_all_drifts: bool | None = None
         self.pool = pool
 
     @property
@@ -128,7 +131,7 @@ class Attempts:
     def _refuted(self, explanation: Explanation) -> bool:
         """Whether an explanation has at most one effect, and is not adequate even with all drifts added to it."""
         smooth = not jumps(explanation) and len(explanation.variants) <= 1
-        return self.none_with_all_drifts and smooth and explanation.changed is None
+        return self.with_all_drifts is False and smooth and explanation.changed is None
 
     def screened(self, seed: Fit) -> list[Candidate]:
         """The candidates with one quantity more than `seed` that have not been fitted yet."""

@@ -13,7 +13,7 @@ class Beam:
     quantities, except where all parameters drift together. The `ahead` most promising of all additions are fitted
     before the others. Once `budget` candidates have been fitted, explanations no longer grow. A search that `resigns`
     fits no others if neither the most promising additions nor the most likely explanation beside a remainder is
-    adequate. Where little is left, it goes on for a short time.
+    adequate. Where the best fit may have stopped too early, it still grows every single drift.
     """
 
     width: int = 3

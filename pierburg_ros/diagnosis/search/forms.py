@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -16,11 +17,11 @@ def other_forms(estimator: Estimator, fit: Fit) -> Iterator[Fit]:
 
     The other quantities begin with their values in `fit`.
     """
-    starts = starts_of(estimator.data, fit.model)
-    for variant in fit.explanation.variants:
-        rest = estimator.at(without(fit.explanation, variant), fit.values)
-        for other in starts:
-            if other.effect == variant.effect and other != variant:
-                variants = tuple(other if each == variant else each for each in fit.explanation.variants)
-                for _, start in promised(estimator, rest, other, starts[other])[:1]:
-                    yield estimator.fit(replace(fit.explanation, variants=variants), {**rest.values, **start})
+    own, starts = fit.explanation, starts_of(estimator.data, fit.model)
+    for variant, other in itertools.product(own.variants, starts):
+        if other.effect != variant.effect or other == variant:
+            continue
+        rest = estimator.at(without(own, variant), fit.values)
+        variants = tuple(other if each == variant else each for each in own.variants)
+        for _, start in promised(estimator, rest, other, starts[other])[:1]:
+            yield estimator.fit(replace(own, variants=variants), {**rest.values, **start})

@@ -33,7 +33,6 @@ class Search(Attempts):
         super().__init__(data, nominal, pool, progress, beam or Beam())
         self.rippled: set[int] = set()
         self.beside: Beside | None = None
-        self.all_drifted = False
         self.resigned = False
 
     def run(self) -> Fit:
@@ -61,7 +60,8 @@ class Search(Attempts):
         """Fit explanations with one quantity more than `best`, the cheap way first, until one is adequate.
 
         A ripple waits until the most promising additions to a drift have been tried, if any will be. A fit between
-        rests takes seconds, and a ripple is found with a drift as well as alone.
+        rests takes seconds, and a ripple is found with a drift as well as alone. A search that resigns ends after the
+        drifts have been grown.
         """
         size = best.explanation.size
         seeds = self._seeds(best)
@@ -69,8 +69,7 @@ class Search(Attempts):
             self.fit_most_promising(seeds)
             if self._accounted_for(best):
                 return
-            if not self.resigned:
-                self._lead_tried_harder(seeds, size + 1)
+            self._lead_tried_harder(seeds, size + 1)
             if self._accounted_for(best):
                 return
             if self._likeliest_accounts_for_all():
@@ -141,11 +140,10 @@ class Search(Attempts):
 
     def _all_drift(self) -> bool:
         """Whether an explanation is adequate where all parameters drift that recordings distinguish; evaluated once."""
-        if self.all_drifted or self.exhausted:
+        if self.with_all_drifts is not None or self.exhausted:
             return False
-        self.all_drifted = True
-        self.none_with_all_drifts = not drift_together(self)
-        return not self.none_with_all_drifts
+        self.with_all_drifts = drift_together(self)
+        return self.with_all_drifts
 
     def _drifts_expanded(self, seeds: Sequence[Fit]) -> bool:
         """Expand those of the `seeds` that have no effect, before any expensive step; gives whether to end there.
@@ -198,8 +196,9 @@ class Search(Attempts):
         """Whether the most likely explanation beside a remainder is adequate when fitted without one; evaluated once.
 
         It is not refined if another explanation has a far smaller error. A search that resigns does so here, without
-        refining anything, if too much is left and nothing comes near the noise. It also resigns if the best fit has a
-        smooth cost: the additions for which linear steps promise most have been fitted by then.
+        refining anything, if too much is left and nothing comes near the noise. It also resigns if the best fit has no
+        other local minimum to look for: its cost is smooth, or they have been searched. The additions for which linear
+        steps promise most have been fitted by then.
         """
         if self.beside is not None:
             return False
