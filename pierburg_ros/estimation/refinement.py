@@ -85,7 +85,7 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
         if found is not None:
             begin = min(begin, part.fit(explanation, found.values), key=lambda each: each.chi2)
         if begin.ratio > EXPLAINED or part is estimator:
-            found = _searched(part, begin, leaping=found is None)
+            found = _searched(part, begin, leaping=found is None, whole=part is estimator)
             if found is None:
                 break
     return replace(found or fit, refined=True)
@@ -99,20 +99,20 @@ def _parts(estimator: Estimator) -> Iterator[Estimator]:
         duration *= 2.0
 
 
-def _searched(estimator: Estimator, fit: Fit, leaping: bool) -> Fit | None:
+def _searched(estimator: Estimator, fit: Fit, leaping: bool, whole: bool) -> Fit | None:
     """`fit`, or a better one of the same explanation, by descents from near and, if `leaping`, from far.
 
     Where the shaft rests, the search starts between its rests: far from the minimum only this cost is smooth enough.
-    There a slip displaces nothing that follows. If the recordings are at least `LONG`, and the search comes near the
-    noise there but not down to it, the explanation lacks more than slips at the right moments, and the result is None.
-    Near the noise, single slips make steps in the cost of whole recordings, and a population searches for the lowest.
+    There a slip displaces nothing that follows. If `LONG` recordings come near the noise there but not down to it,
+    something else than slips is lacking: the result is None for `whole` recordings, and what is known for a part. Near
+    the noise, single slips make steps in the cost, and a population of points searches for the lowest.
     """
     if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
         return _descended(estimator, fit, leaping)
     smooth = _descended_between_rests(estimator, fit, leaping)
     long = estimator.data.duration >= LONG * estimator.data.scales.time
     if long and EXPLAINED < smooth.ratio < NEARLY:
-        return None
+        return None if whole else estimator.fit(fit.explanation, smooth.values)
     lower = _descended_from(estimator, fit, smooth)
     while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
         fit = lower

@@ -93,7 +93,8 @@ def standing(
 def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadline) -> Supported:
     """What unseen samples of a single recording confirm and nothing simpler can replace, and the play of its sensor.
 
-    A play is read from the samples themselves: it needs none of the other quantities.
+    A play is read from the samples themselves: it needs none of the other quantities. If time ran out before the most
+    likely explanation was known, the re-estimated model takes its place there.
     """
     data, nominal = found.data, found.nominal
     nearest = min((fit for fit in found.fits.values() if fit.explanation.changed is None), key=lambda fit: fit.chi2)
@@ -107,7 +108,7 @@ def _stood(found: Found, progress: Progress, jobs: int | None, deadline: Deadlin
         named = told_apart(beside.confirmed, Weighing(data, nominal, pool), progress)
     if _doubtful(named, found) or _outdone(named, found):
         named = Supported(nominal, scored(data, found.estimator.at(Explanation())), {}, named.doubted)
-    return with_play(named, beside.reached.fit, data, nominal)
+    return with_play(named, found.recalibrated if added.stopped else beside.reached.fit, data, nominal)
 
 
 def _outdone(stood: Supported, found: Found) -> bool:

@@ -78,9 +78,14 @@ class Attempts:
                 del self.fits[explanation]
 
     def of_size(self, size: int) -> list[Fit]:
-        """The fits of explanations with `size` quantities, the best first."""
-        fits = (fit for fit in list(self.fits.values()) if fit.explanation.size == size)
-        return sorted(fits, key=lambda fit: fit.chi2)
+        """The fits of explanations with `size` quantities, the best first.
+
+        A change in mid-recording has more freedom than a drift. It counts if it is adequate, or leaves less than half
+        the chi2 of the best fit without one.
+        """
+        fits = sorted((fit for fit in list(self.fits.values()) if fit.explanation.size == size), key=_chi2)
+        steady = next((fit.chi2 for fit in fits if fit.explanation.changed is None), np.inf)
+        return [each for each in fits if not each.explanation.changed or each.chi2 < 0.5 * steady or adequate(each)]
 
     def best_of_size(self, size: int) -> Fit | None:
         """The best fit among explanations with `size` quantities, None if none was tried."""
@@ -110,12 +115,12 @@ class Attempts:
         """The best fit so far with drifts only, or nominal; the explanation `but` does not count, unless nominal."""
         own = (fit.explanation for fit in list(self.fits.values()))
         drifted = (each for each in own if not each.variants and not each.changed and (each != but or not each.size))
-        return min((self.fits[each] for each in drifted), key=lambda fit: fit.chi2)
+        return min((self.fits[each] for each in drifted), key=_chi2)
 
     def nearest(self) -> Fit:
         """The fit with the lowest chi2 so far, among explanations within the beam's depth."""
         fits = (fit for fit in list(self.fits.values()) if fit.explanation.size <= self.beam.depth)
-        return min(fits, key=lambda fit: fit.chi2)
+        return min(fits, key=_chi2)
 
     def expand(self, seed: Fit) -> list[Fit]:
         """Race the explanations with one quantity more than `seed`, once for each seed; gives the full fits made."""
@@ -168,12 +173,15 @@ class Attempts:
     def refine_leading(self, size: int) -> None:
         """Refine the best fits of a `size`, if the leading one is adequate or leaves far less than every smaller one.
 
-        A leading explanation that leaves nearly as much as a smaller one is not a true one that stopped early.
+        A leading explanation that leaves nearly as much as a smaller one is not a true one that stopped early. A change
+        in mid-recording is no smaller one, unless the leading explanation has one too.
         """
         leading = self.best_of_size(size)
+        if leading is None:
+            return
         fits = (fit for fit in list(self.fits.values()) if fit.explanation.size < size)
-        smaller = min(fits, key=lambda fit: fit.chi2)
-        if leading is not None and (adequate(leading) or far_below(leading, smaller)):
+        smaller = (fit for fit in fits if leading.explanation.changed or not fit.explanation.changed)
+        if adequate(leading) or far_below(leading, min(smaller, key=_chi2)):
             self.refine(self.of_size(size))
 
     def refine(self, fits: Iterable[Fit]) -> None:
@@ -185,7 +193,7 @@ class Attempts:
         chosen = [fit for fit in fits if near(fit, best)]
         if not adequate(best) and best.explanation.variants and (jumps(best.explanation) or best.ratio < NEARLY):
             chosen.append(best)
-        chosen = [fit for fit in sorted(chosen, key=lambda fit: fit.chi2)[:REFINED] if not fit.refined]
+        chosen = [fit for fit in sorted(chosen, key=_chi2)[:REFINED] if not fit.refined]
         if len(chosen) == 1:
             self.refine_alone(chosen[0])
         else:
@@ -209,6 +217,10 @@ def far_below(fit: Fit, smaller: Fit) -> bool:
 def near(fit: Fit, best: Fit) -> bool:
     """Whether a fit with many local minima has almost the error of the best, without being tied with it."""
     return jumps(fit.explanation) and fit.ratio < COMPARABLE * best.ratio and alike(best) < fit.misfit
+
+
+def _chi2(fit: Fit) -> float:
+    return fit.chi2
 
 
 def _preference(fit: Fit) -> tuple[int, bool, int, float]:

@@ -6,8 +6,6 @@ import itertools
 from collections.abc import Sequence
 from concurrent.futures import Executor
 
-import numpy as np
-
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.pruning import pruned
@@ -123,14 +121,14 @@ class Search(Attempts):
     def _followed(self, best: Fit) -> bool:
         """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
 
-        If so, no other explanation of its size is tried. A leading explanation near the noise is not grown if its
-        events jump: it may only have stopped too early. Ripples come first: they take less time than all else.
+        If so, no other explanation of its size is tried. A leading explanation whose events jump is not grown before it
+        is refined: it may only have stopped too early. Ripples come first: they take less time than all else.
         """
         size = best.explanation.size + 1
         leading = self.best_of_size(size)
         if leading is None or size == self.beam.depth:
             return False
-        early = jumps(leading.explanation) and leading.ratio < NEARLY
+        early = jumps(leading.explanation) and not leading.refined
         if early or not far_below(leading, best):
             return False
         self._fit_ripples([leading])
@@ -179,16 +177,12 @@ class Search(Attempts):
     def _seeds(self, best: Fit) -> list[Fit]:
         """Fits of the size of `best` that are worth growing: `best` itself and, if it is not adequate, its rivals.
 
-        Single drifts come first: an effect with a drift is more frequent than two effects, and is found sooner. A
-        change in mid-recording has more freedom than a drift, so it must have less than half the chi2 of the best fit
-        without one.
+        Single drifts come first: an effect with a drift is more frequent than two effects, and is found sooner.
         """
         size = best.explanation.size
         if adequate(best):
             return [best]
         rivals = self.of_size(size)
-        steady = min((fit.chi2 for fit in rivals if fit.explanation.changed is None), default=np.inf)
-        rivals = [fit for fit in rivals if fit.explanation.changed is None or fit.chi2 < 0.5 * steady]
         drifts = [fit for fit in rivals if not fit.explanation.variants and size == 1]
         return list({id(fit): fit for fit in (*drifts, *rivals[: self.beam.width])}.values())
 

@@ -9,7 +9,7 @@ from support.recordings import NOISE, NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.search.reversals import directions, play_at_reversals
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.selection import PROMISING
-from pierburg_ros.diagnosis.search.supported import with_play
+from pierburg_ros.diagnosis.search.supported import PLAY, with_play
 from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
@@ -77,3 +77,13 @@ def test_a_play_that_is_not_probable_is_doubted(monkeypatch):
     found = with_play(Supported(NOMINAL, scored(data, bare), {}), bare, data, NOMINAL)
     assert not found.weights
     assert found.doubted["sensor_hysteresis"].confidence == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("gain", "named"), [(0.9, False), (1.1, True)])
+def test_a_faint_play_is_not_named(monkeypatch, gain, named):
+    """One of 0.0016 rad gained 20 in a closed loop with static friction."""
+    data = measured(WIDTH)
+    bare = Estimator(data, NOMINAL).at(Explanation())
+    faint = replace(play_at_reversals(data, bare), gain=gain * PLAY, left=0.0)
+    monkeypatch.setattr("pierburg_ros.diagnosis.search.supported.play_at_reversals", lambda *_: faint)
+    assert bool(with_play(Supported(NOMINAL, scored(data, bare), {}), bare, data, NOMINAL).weights) == named

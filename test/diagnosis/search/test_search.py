@@ -175,18 +175,19 @@ def test_single_drifts_are_all_grown_and_first(short: Data, pool: Executor) -> N
 
 
 @pytest.mark.parametrize(
-    ("place", "left", "second"), [(0, 14.0, 0), (0, 16.0, None), (0, 4.0, 0), (3, 14.0, 3), (3, 4.0, None)]
+    ("place", "left", "refined", "second"),
+    [(0, 14.0, False, 0), (0, 16.0, False, None), (0, 4.0, False, 0), (3, 14.0, True, 3), (3, 14.0, False, None)],
 )
 def test_what_leads_by_far_is_grown_before_others_of_its_size(
-    short: Data, pool: Executor, place: int, left: float, second: int | None
+    short: Data, pool: Executor, place: int, left: float, refined: bool, second: int | None
 ) -> None:
-    """By less it waits, and so it does near the noise if events jump: then it may only have stopped too early."""
+    """By less it waits, and so it does until it is refined if events jump: it may only have stopped too early."""
     pair = PAIRS[place]
     triple = pair.plus(ONES[1].variants[0])
 
     class Leading(Grown):
         def fit_most_promising(self, seeds: object) -> None:
-            self.add(pair)
+            self.keep(replace(made_up(pair, left, NOMINAL), refined=refined))
 
     found = Leading(short, pool, {NOTHING: 40.0, ONES[0]: 30.0, ONES[1]: 31.0, pair: left, triple: 0.99}, Beam())
     assert found.run().explanation == triple
@@ -447,6 +448,31 @@ def test_of_each_size_the_best_comes_first(empty: Search) -> None:
     assert empty.of_size(1) == fits[::-1]
     assert empty.best_of_size(1) is fits[1]
     assert empty.best_of_size(2) is None
+
+
+@pytest.mark.parametrize(("drifts", "left", "counts"), [(4.0, 3.5, False), (4.0, 2.5, True), (1.3, 0.99, True)])
+def test_a_change_in_mid_recording_counts_where_it_leaves_far_less_or_accounts_for_all(
+    empty: Search, drifts: float, left: float, counts: bool
+) -> None:
+    drift = made_up(Explanation(("spring_preload",)), drifts, NOMINAL)
+    change = made_up(Explanation(changed="coulomb_friction"), left, NOMINAL)
+    for fit in (drift, change):
+        empty.keep(fit)
+    assert empty.of_size(1) == ([change, drift] if counts else [drift])
+
+
+@pytest.mark.parametrize("changed", [None, "spring_preload"])
+def test_a_change_in_mid_recording_keeps_no_other_fit_from_being_refined(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, changed: str | None
+) -> None:
+    """It is held against other changes alone."""
+    refined: list[Fit] = []
+    monkeypatch.setattr(empty, "refine", refined.extend)
+    leading = made_up(Explanation(("coulomb_friction",), ONES[3].variants, changed), 4.0, NOMINAL)
+    for fit in (made_up(NOTHING, 12.0, NOMINAL), made_up(Explanation(changed="spring_preload"), 6.0, NOMINAL), leading):
+        empty.keep(fit)
+    empty.refine_leading(leading.explanation.size)
+    assert refined == ([] if changed else [leading])
 
 
 @pytest.mark.parametrize(("above", "expected"), [(0.5 * TIED, ("spring_preload",)), (2.0 * TIED, ())])
