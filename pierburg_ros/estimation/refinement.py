@@ -43,8 +43,8 @@ AGAIN = 0.5
 shows that the search began in another valley; not varied."""
 NEARLY = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early: a population continues,
-and a search does not resign. Between rests, the end of a search in a long recording that lacks more than slips. The
-most likely explanation may have stopped too early up to this multiple of the smallest error. Chosen: descents to true
+and a search does not resign. A ripple is refined if it comes so near between rests. The most likely explanation may
+have stopped too early up to this multiple of the smallest error. Chosen: descents to true
 explanations stopped at 1.25 to 16 times the noise (n = 2 trials), one most likely at 1.9 times the smallest error. A
 search resigned at 1.18 times the noise, and its truth was found 18 s later; not varied."""
 POINTS = 4
@@ -58,12 +58,6 @@ SHORTEST = CYCLE * BLOCK / 2.0
 """Length of the part in which the search begins, in the actuator's own time; it doubles from part to part. Measured: n
 = 16 poor starts of static friction beside a drift, in a minute of closed loop. From half a cycle of blocks (6 s) on, 15
 reach the noise, from a cycle on 14, from two on 11, from whole recordings 9."""
-LONG = 3.5 * SHORTEST
-"""Shortest part in which the end of a search between rests shows that the explanation lacks more than slips, in the
-actuator's own time. Measured: poor starts of static friction in closed loop, whose true explanation may stop there at
-1.2 to 2.4 times the noise. Believed in recordings of 12 s, these ends leave 17 of n = 41 at the noise in place of 29,
-in recordings of 20 s 8 of n = 25 in place of 19; believed from 24 s on, all of n = 39 in recordings of a minute.
-"""
 WIDEST = 0.25
 """Largest distance of the search, as a share of a parameter's range. Chosen: an axis along which the data say nothing
 would lead out of all bounds; not varied."""
@@ -74,8 +68,7 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
 
     The search begins in a short part of the recordings, in which few slips can go wrong. The part grows, and each
     search begins at the better one of `fit` and what the last part has shown. Parts that `fit` accounts for are passed
-    over. If an effect takes time or a parameter changes in mid-recording, whole recordings are searched at once. The
-    search ends where it shows that no slip is to blame: `fit` then lacks something else.
+    over. If an effect takes time or a parameter changes in mid-recording, whole recordings are searched at once.
     """
     explanation, found = fit.explanation, None
     late = explanation.changed is not None or any(takes_time(variant) for variant in explanation.variants)
@@ -85,9 +78,7 @@ def refined(estimator: Estimator, fit: Fit) -> Fit:
         if found is not None:
             begin = min(begin, part.fit(explanation, found.values), key=lambda each: each.chi2)
         if begin.ratio > EXPLAINED or part is estimator:
-            found = _searched(part, begin, leaping=found is None, whole=part is estimator)
-            if found is None:
-                break
+            found = _searched(part, begin, leaping=found is None)
     return replace(found or fit, refined=True)
 
 
@@ -99,20 +90,16 @@ def _parts(estimator: Estimator) -> Iterator[Estimator]:
         duration *= 2.0
 
 
-def _searched(estimator: Estimator, fit: Fit, leaping: bool, whole: bool) -> Fit | None:
+def _searched(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
     """`fit`, or a better one of the same explanation, by descents from near and, if `leaping`, from far.
 
     Where the shaft rests, the search starts between its rests: far from the minimum only this cost is smooth enough.
-    There a slip displaces nothing that follows. If `LONG` recordings come near the noise there but not down to it,
-    something else than slips is lacking: the result is None for `whole` recordings, and what is known for a part. Near
-    the noise, single slips make steps in the cost, and a population of points searches for the lowest.
+    There a slip displaces nothing that follows. Near the noise, single slips make steps in the cost, and a population
+    of points searches for the lowest.
     """
     if len(estimator.between_rests.data.runs) == len(estimator.data.runs):
         return _descended(estimator, fit, leaping)
     smooth = _descended_between_rests(estimator, fit, leaping)
-    long = estimator.data.duration >= LONG * estimator.data.scales.time
-    if long and EXPLAINED < smooth.ratio < NEARLY:
-        return None if whole else estimator.fit(fit.explanation, smooth.values)
     lower = _descended_from(estimator, fit, smooth)
     while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
         fit = lower

@@ -1,7 +1,6 @@
 """A second look finds the values that a descent over a rough cost has missed."""
 
 import pytest
-from support.fits import made_up
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.estimation.estimator import Estimator, Fit
@@ -46,7 +45,7 @@ def test_leaps_in_a_short_part_of_a_minute_in_closed_loop(monkeypatch: pytest.Mo
 
 @pytest.mark.search
 def test_goes_on_where_little_was_recorded() -> None:
-    """In a short recording the search between rests stops early, though the explanation is the true one."""
+    """The search between rests stops early there, though the explanation is the true one."""
     truth = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.12}
     estimator = Estimator(data_on(recording_in_closed_loop(truth, duration=20.0)), NOMINAL)
     start = {"static_friction.breakaway_torque": 0.297, "static_friction.stribeck_velocity": 0.096}
@@ -95,25 +94,3 @@ def test_the_part_grows_unless_an_effect_takes_time(monkeypatch: pytest.MonkeyPa
         refined(estimator, estimator.at(explanation))
         assert [leaping for _, leaping in searched] == [True] + [False] * (len(parts) - 1)
         assert [duration for duration, _ in searched] == pytest.approx(parts, abs=0.01)
-
-
-@pytest.mark.parametrize(("left", "searches"), [(3.0, 2), (1.0, 3), (9.0, 3)])
-def test_what_comes_near_the_noise_between_rests_but_not_to_it_lacks_more_than_slips(
-    monkeypatch: pytest.MonkeyPatch, left: float, searches: int
-) -> None:
-    """In a short part it may only have stopped too early. Between rests so much is left; whole recordings tell more."""
-    estimator = Estimator(data_on(recording({"spring_preload": 0.3}, duration=40.0)), NOMINAL)
-    fit, searched = estimator.at(STICTION), []
-
-    def between(where: Estimator, fit: Fit, leaping: bool) -> Fit:
-        return made_up(STICTION, left, NOMINAL)
-
-    def along(where: Estimator, fit: Fit, smooth: Fit) -> Fit:
-        searched.append(where.data.duration)
-        return where.at(STICTION)
-
-    monkeypatch.setattr("pierburg_ros.estimation.refinement._descended_between_rests", between)
-    monkeypatch.setattr("pierburg_ros.estimation.refinement._descended_from", along)
-    again = refined(estimator, fit)
-    assert again.refined and again.values == fit.values
-    assert searched == pytest.approx([6.0, 12.0, 40.0][:searches], abs=0.01)

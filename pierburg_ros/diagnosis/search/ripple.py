@@ -46,7 +46,7 @@ def between_rests(
     ripple: Ripple,
     bases: Mapping[Explanation, Fit],
     pool: Executor,
-) -> list[Fit]:
+) -> list[tuple[Fit, Fit]]:
     """Fits of explanations with a `ripple`, each grown on the fit without it in `bases`: the `FOLLOWED` best ones.
 
     The shaft rests where the ripple lets it. If it sets off at the wrong crest, everything after that is displaced, so
@@ -54,7 +54,7 @@ def between_rests(
     first part of each recording will do if it shows the error. For the base with the lowest error, one descent starts
     from the best phase of each rhythm that lowers this error. Bases with a change in mid-recording, or with an effect
     that remembers longer than a rest, are left out. If no rhythm leaves far less error between rests, nothing is given.
-    The fits that are given are of `whole` recordings.
+    Each is given as a fit of `whole` recordings, and as the fit between rests from which that has descended.
     """
     grown = {e: base for e, base in bases.items() if e.changed is None and forgotten(e.effects)}
     if not grown:
@@ -67,10 +67,9 @@ def between_rests(
     def descended(explanation: Explanation, values: Mapping[str, float]) -> Fit:
         return rests.fit(explanation, values, BRIEF, held=held)
 
-    def finished(fit: Fit) -> Fit:
-        if held is not None:
-            fit = whole.fit(fit.explanation, fit.values, held=held)
-        return whole.fit(fit.explanation, fit.values)
+    def finished(smooth: Fit) -> tuple[Fit, Fit]:
+        fit = smooth if held is None else whole.fit(smooth.explanation, smooth.values, held=held)
+        return whole.fit(fit.explanation, fit.values), smooth
 
     explanation, base = min(begins, key=lambda pair: pair[1].chi2)
     rhythms = ripple.rhythms(missing_torque(whole.data, whole.data.longest, base.model))

@@ -116,7 +116,7 @@ class Search(Attempts):
             return
         self._fit_ripples(seeds)
         if jumps(leading.explanation) and not self.completed(size):
-            self.refine_leading(size)
+            self.refine_alone(leading)
 
     def _followed(self, best: Fit) -> bool:
         """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
@@ -218,7 +218,11 @@ class Search(Attempts):
         return self.nearest().ratio
 
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
-        """Fit ripples of the load on top of the `seeds`, once, between rests: this finds them where the shaft slips."""
+        """Fit ripples of the load on top of the `seeds`, once, between rests: this finds them where the shaft slips.
+
+        A ripple that comes near the noise there is refined from there. Slips may keep it far from the noise along whole
+        recordings.
+        """
         size = seeds[0].explanation.size + 1
         if size in self.rippled:
             return
@@ -234,9 +238,8 @@ class Search(Attempts):
             self.progress(f"{variant.label}, between rests")
             grown = ((canonical(begin.explanation.plus(variant), self.drifts), begin) for begin in begins)
             bases = {explanation: begin for explanation, begin in grown if explanation is not None}
-            fits = between_rests(self.whole, variant, ripple, bases, self.pool)
-            for fit in map(self.keep, fits):
-                begin = min(bases[fit.explanation], self.least_drifted(), key=lambda each: each.chi2)
-                worth = fit.ratio < NEARLY and far_below(fit, begin)
-                if worth and not self.completed(fit.explanation.size):
-                    self.refine_alone(fit)
+            for fit, smooth in between_rests(self.whole, variant, ripple, bases, self.pool):
+                self.keep(fit)
+                near = min(fit.ratio, smooth.ratio) < NEARLY
+                if near and not self.completed(fit.explanation.size):
+                    self.refine_alone(self.whole.at(fit.explanation, smooth.values))

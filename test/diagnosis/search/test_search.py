@@ -214,16 +214,33 @@ def test_ripples_are_looked_for_alone_where_no_pair_will_be(short: Data, pool: E
     assert found.before_ripples == {1: [NOTHING]}
 
 
-@pytest.mark.parametrize(("ratio", "refined"), [(4.0, True), (6.0, False), (0.99, False)])
-def test_a_ripple_is_refined_where_it_comes_near(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, ratio: float, refined: bool
+@pytest.mark.parametrize(
+    ("along", "between", "refined"), [(4.0, 8.0, True), (17.0, 3.0, True), (6.0, 6.0, False), (0.99, 1.0, False)]
+)
+def test_a_ripple_is_refined_where_it_comes_near_along_recordings_or_between_rests(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, along: float, between: float, refined: bool
 ) -> None:
-    found, again = made_up(ONES[0], ratio, NOMINAL), list[Fit]()
-    monkeypatch.setattr(module, "ripples", lambda _: [(ONES[0].variants[0], None)])
-    monkeypatch.setattr(module, "between_rests", lambda *_: [found])
+    """Between rests no slip displaces what follows, so the search for other minima begins at the values found there."""
+    again, own = list[Fit](), {"sensor_lag.time_constant": 0.012}
+    fits = made_up(Explanation((), (LAG,)), along, NOMINAL), made_up(Explanation((), (LAG,)), between, NOMINAL, own)
+    monkeypatch.setattr(module, "ripples", lambda _: [(LAG, None)])
+    monkeypatch.setattr(module, "between_rests", lambda *_: [fits])
     monkeypatch.setattr(empty, "refine_alone", again.append)
     empty._fit_ripples([empty.keep(made_up(NOTHING, 9.0, NOMINAL))])
-    assert again == ([found] if refined else [])
+    assert [fit.values["sensor_lag.time_constant"] for fit in again] == [0.012] * refined
+
+
+@pytest.mark.parametrize("effect", ["backlash", "sensor_lag"])
+def test_what_leads_is_refined_if_its_events_jump_however_much_it_leaves(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, effect: str
+) -> None:
+    refined = list[Fit]()
+    monkeypatch.setattr(empty, "refine_alone", refined.append)
+    monkeypatch.setattr(empty, "_fit_ripples", lambda _: None)
+    single = empty.keep(made_up(FRICTION, 74.0, NOMINAL))
+    leading = empty.keep(made_up(FRICTION.plus(Variant(effect, ("x",))), 39.0, NOMINAL))
+    empty._lead_tried_harder([single], 2)
+    assert refined == ([leading] if effect == "backlash" else [])
 
 
 @pytest.mark.parametrize(("effect", "expected"), [(6.0, [1, 2, 1]), (8.0, [2, 1])])
@@ -233,7 +250,7 @@ def test_an_effect_that_has_adapted_to_a_ripple_does_not_hide_it(
     """If an effect leads, the drifts are looked at without it first; the nominal model comes last in any case."""
     grown = list[int]()
 
-    def between_rests(whole: Any, variant: Variant, ripple: Any, bases: dict[Explanation, Fit], pool: Any) -> list[Fit]:
+    def between_rests(whole: Any, variant: Variant, ripple: Any, bases: dict[Explanation, Fit], pool: Any) -> list[Any]:
         grown.append(len(bases))
         return []
 
