@@ -44,9 +44,9 @@ shows that the search began in another valley; not varied."""
 NEARLY = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early: a population continues,
 and a search does not resign. A ripple is refined if it comes so near between rests. The most likely explanation may
-have stopped too early up to this multiple of the smallest error. Chosen: descents to true
-explanations stopped at 1.25 to 16 times the noise (n = 2 trials), one most likely at 1.9 times the smallest error. A
-search resigned at 1.18 times the noise, and its truth was found 18 s later; not varied."""
+have stopped too early up to this multiple of the smallest error. Chosen: descents to true explanations stopped at 1.25
+to 16 times the noise (n = 2 trials), one most likely at 1.9 times the smallest error. A search resigned at 1.18 times
+the noise, and its truth was found 18 s later; not varied."""
 POINTS = 4
 """Points of a population for each quantity. Measured: n = 3 searches with three quantities, along whole recordings of
 static friction beside a drift. With 12 points, each comes from 1.12 times the noise to 1.02, where the true values are.

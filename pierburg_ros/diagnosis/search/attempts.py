@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -206,7 +207,8 @@ class Attempts:
 
     def _refine(self, estimator: Estimator, fit: Fit) -> None:
         self.progress(f"{fit.explanation.label}, other local minima")
-        self.fits[fit.explanation] = refined(estimator, fit)
+        again, known = refined(estimator, fit), self.fits.get(fit.explanation, fit)
+        self.fits[fit.explanation] = replace(min(again, known, key=_chi2), refined=True)
 
 
 def far_below(fit: Fit, smaller: Fit) -> bool:

@@ -116,7 +116,8 @@ class Search(Attempts):
             return
         self._fit_ripples(seeds)
         if jumps(leading.explanation) and not self.completed(size):
-            self.refine_alone(leading)
+            # a ripple that led may have been refined by then
+            self.refine_alone(self.fits[leading.explanation])
 
     def _followed(self, best: Fit) -> bool:
         """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
@@ -239,7 +240,6 @@ class Search(Attempts):
             grown = ((canonical(begin.explanation.plus(variant), self.drifts), begin) for begin in begins)
             bases = {explanation: begin for explanation, begin in grown if explanation is not None}
             for fit, smooth in between_rests(self.whole, variant, ripple, bases, self.pool):
-                self.keep(fit)
                 near = min(fit.ratio, smooth.ratio) < NEARLY
-                if near and not self.completed(fit.explanation.size):
+                if not self.keep(fit).refined and near and not self.completed(fit.explanation.size):
                     self.refine_alone(self.whole.at(fit.explanation, smooth.values))

@@ -243,6 +243,30 @@ def test_what_leads_is_refined_if_its_events_jump_however_much_it_leaves(
     assert refined == ([leading] if effect == "backlash" else [])
 
 
+def test_what_a_ripple_has_refined_is_not_refined_again(empty: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The fit that led before ripples were looked for may have been replaced by then."""
+    again = list[Fit]()
+    single = empty.keep(made_up(FRICTION, 74.0, NOMINAL))
+    leading = empty.keep(made_up(FRICTION.plus(ONES[3].variants[0]), 39.0, NOMINAL))
+    lower = replace(made_up(leading.explanation, 9.0, NOMINAL), refined=True)
+    monkeypatch.setattr(empty, "_fit_ripples", lambda _: empty.keep(lower))
+    monkeypatch.setattr(empty, "_refine", lambda _, fit: again.append(fit))
+    empty._lead_tried_harder([single], 2)
+    assert not again
+
+
+@pytest.mark.parametrize(("reached", "kept"), [(3.0, 3.0), (9.0, 6.0)])
+def test_a_search_for_other_minima_replaces_no_better_fit(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, reached: float, kept: float
+) -> None:
+    """It may begin elsewhere than at the best fit known, as that of a ripple does."""
+    monkeypatch.setattr("pierburg_ros.diagnosis.search.attempts.refined", lambda *_: made_up(ONES[3], reached, NOMINAL))
+    empty.keep(made_up(ONES[3], 6.0, NOMINAL))
+    empty.refine_alone(made_up(ONES[3], 20.0, NOMINAL))
+    assert empty.fits[ONES[3]].ratio == pytest.approx(kept)
+    assert empty.fits[ONES[3]].refined
+
+
 @pytest.mark.parametrize(("effect", "expected"), [(6.0, [1, 2, 1]), (8.0, [2, 1])])
 def test_an_effect_that_has_adapted_to_a_ripple_does_not_hide_it(
     empty: Search, monkeypatch: pytest.MonkeyPatch, effect: float, expected: list[int]
