@@ -28,7 +28,6 @@ from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.forms import other_forms
 from pierburg_ros.diagnosis.search.found import Found, search, settled_on
-from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.supported import confirmed_beside
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.diagnosis.search.weighing import Weighing
@@ -37,7 +36,7 @@ from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
 from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED

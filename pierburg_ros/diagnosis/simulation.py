@@ -17,12 +17,12 @@ from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis, Simulated, Simulation
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
 from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import encoded
 from pierburg_ros.recording import Recording

@@ -14,7 +14,15 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.estimation.least_squares import FULL, TOLERANCE, Map, Solution, jacobian, minimise
-from pierburg_ros.estimation.likelihood import FORMULATION, beyond, counted, repetition, structure
+from pierburg_ros.estimation.likelihood import (
+    EXPLAINED,
+    FORMULATION,
+    SIGNIFICANT,
+    beyond,
+    counted,
+    repetition,
+    structure,
+)
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.estimation.rests import cut_at_rests
 from pierburg_ros.estimation.run import Switch
@@ -74,6 +82,14 @@ class Fit:
     def spread(self) -> float:
         """Rise of chi2 for one standard deviation: 1 where the residual is white noise."""
         return max(1.0, self.ratio**2) * self.repetition
+
+
+def adequate(fit: Fit) -> bool:
+    """Whether an explanation is adequate: it leaves only noise, of a size that may be estimated too low.
+
+    A residual that is correlated in time counts as one more quantity, with the same threshold.
+    """
+    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
 
 
 class Estimator:

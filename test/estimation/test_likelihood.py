@@ -6,11 +6,18 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, data_on, recording
 
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, adequate
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.estimation.estimator import Estimator, adequate
 from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.likelihood import CLOSE, EXPLAINED, counted, lasting_rounding, repetition, structure
+from pierburg_ros.estimation.likelihood import (
+    CLOSE,
+    EXPLAINED,
+    SIGNIFICANT,
+    counted,
+    lasting_rounding,
+    repetition,
+    structure,
+)
 
 
 def stepped(step: float, noise: float) -> Data:

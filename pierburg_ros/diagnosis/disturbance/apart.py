@@ -17,10 +17,9 @@ from pierburg_ros.diagnosis.disturbance.wandered import wandered
 from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
-from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate, forgiven
 from pierburg_ros.estimation.explanation import Explanation, Variant, moments, without
 from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED

@@ -8,10 +8,9 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Discrepancy
-from pierburg_ros.estimation.likelihood import structure
+from pierburg_ros.estimation.likelihood import SIGNIFICANT, structure
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 

@@ -13,7 +13,6 @@ from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.supported import likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight
@@ -22,6 +21,7 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
+from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 

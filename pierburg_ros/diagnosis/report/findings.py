@@ -42,7 +42,7 @@ from pierburg_ros.diagnosis.schema import (
     TorqueOverTime,
 )
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, gain
+from pierburg_ros.diagnosis.search.selection import gain
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
@@ -51,6 +51,7 @@ from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
+from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.plant import Model
 

@@ -7,12 +7,13 @@ from dataclasses import replace
 from pierburg_ros.diagnosis.result import Tried
 from pierburg_ros.diagnosis.schema import Status
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT, tied
 from pierburg_ros.diagnosis.search.selection import alike as closest
+from pierburg_ros.diagnosis.search.selection import tied
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.estimation.data import rms
 from pierburg_ros.estimation.estimator import Fit
 from pierburg_ros.estimation.explanation import WHEN, quantities
+from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.pages.numbers import words
 
 DRAWN = 5

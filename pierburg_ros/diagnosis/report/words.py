@@ -9,12 +9,11 @@ from pierburg_ros.diagnosis.evidence.quality import Limit
 from pierburg_ros.diagnosis.remainder.left_out import LeftOut
 from pierburg_ros.diagnosis.report.tried import NOMINAL, identifier
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Estimate, FitQuality, NotTestable, Verdict
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.estimation.likelihood import SIGNIFICANT, TIED
 from pierburg_ros.pages import numbers
 
 SEPARATES = {

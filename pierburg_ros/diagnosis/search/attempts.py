@@ -13,10 +13,10 @@ from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.race import winners
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
-from pierburg_ros.diagnosis.search.selection import adequate, alike, betters, tied
+from pierburg_ros.diagnosis.search.selection import alike, betters, tied
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.refinement import NEARLY, refined
 from pierburg_ros.plant import Model
@@ -152,8 +152,8 @@ class Attempts:
     def race(self, candidates: Sequence[Candidate], most: int | None = None) -> list[Fit]:
         """Full fits of the candidates that win the race.
 
-        A candidate may be adequate on the samples of the race, but not as a full fit. If its cost has many local
-        minima, it has stopped in one of them since, and is refined.
+        A candidate may be adequate on the samples of the race, or lead it with far less than its base leaves, but not
+        as a full fit. If its cost has many local minima, it has stopped in one of them since, and is refined.
         """
         if not candidates:
             return []
@@ -163,13 +163,22 @@ class Attempts:
         leading = dict.fromkeys((self.whole, self.whole.first_part), known.ratio if known else np.inf)
         ahead = winners(candidates, leading, self.pool, self.progress, most)
         fits = list(self.pool.map(lambda fit: self.add(fit.explanation, fit.values), ahead))
+        bases = {candidate.explanation: candidate.base for candidate in candidates}
         stopped = [
             fit
             for brief, fit in zip(ahead, fits, strict=True)
             if adequate(brief) and jumps(fit.explanation) and not adequate(fit)
         ]
         self.refine(stopped)
+        if fits and self._lost(ahead[0], bases[fits[0].explanation]):
+            self.refine_alone(self.fits[fits[0].explanation])
         return [self.fits[fit.explanation] for fit in fits]
+
+    def _lost(self, brief: Fit, base: Fit) -> bool:
+        """Whether a fit lost to slips in the rest of the recording what its `brief` fit had gained on its `base`."""
+        fit = self.fits[brief.explanation]
+        gained = far_below(brief, base) and not far_below(fit, self.fits[base.explanation])
+        return gained and jumps(fit.explanation) and not self.completed(fit.explanation.size)
 
     def refine_leading(self, size: int) -> None:
         """Refine the best fits of a `size`, if the leading one is adequate or leaves far less than every smaller one.

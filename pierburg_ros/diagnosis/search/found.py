@@ -12,12 +12,12 @@ from pierburg_ros.diagnosis.search.needed import needed
 from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.diagnosis.search.selection import adequate, overlooks
+from pierburg_ros.diagnosis.search.selection import overlooks
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.together import recalibrated
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.intervals import Estimate, lowest_with_estimates
 from pierburg_ros.estimation.refinement import lowered

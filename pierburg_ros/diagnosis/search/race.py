@@ -10,8 +10,8 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.linear import redated
 from pierburg_ros.diagnosis.search.screening import Candidate
-from pierburg_ros.diagnosis.search.selection import PROMISING, adequate
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.diagnosis.search.selection import PROMISING
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
 

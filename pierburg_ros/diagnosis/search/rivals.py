@@ -9,10 +9,10 @@ from functools import partial
 from pierburg_ros.diagnosis.search.attempts import Attempts
 from pierburg_ros.diagnosis.search.candidates import may_change, with_drifts
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
-from pierburg_ros.diagnosis.search.selection import adequate, alike, gains_enough
+from pierburg_ros.diagnosis.search.selection import alike, gains_enough
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import (
     AFTER,
     WHEN,

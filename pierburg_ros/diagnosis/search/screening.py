@@ -10,10 +10,10 @@ import numpy as np
 
 from pierburg_ros.diagnosis.search.candidates import Addition, expansions
 from pierburg_ros.diagnosis.search.linear import change_starts, promised, promised_left
-from pierburg_ros.diagnosis.search.selection import PROMISING, adequate
+from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.first_part import takes_time, where_shown
 

@@ -8,15 +8,16 @@ from concurrent.futures import Executor
 
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.beam import Beam
+from pierburg_ros.diagnosis.search.candidates import with_drifts
 from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.ripple import between_rests, ripples
-from pierburg_ros.diagnosis.search.selection import adequate, names_all
+from pierburg_ros.diagnosis.search.selection import names_all
 from pierburg_ros.diagnosis.search.supported import Beside, supported
 from pierburg_ros.diagnosis.search.together import drift_together
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, canonical, jumps
 from pierburg_ros.estimation.refinement import NEARLY
 from pierburg_ros.plant import Model
@@ -58,8 +59,8 @@ class Search(Attempts):
         """Fit explanations with one quantity more than `best`, the cheap way first, until one is adequate.
 
         A ripple waits until the most promising additions to a drift have been tried, if any will be. A fit between
-        rests takes seconds, and a ripple is found with a drift as well as alone. A search that resigns ends after the
-        drifts have been grown.
+        rests takes seconds, and a ripple is found with a drift as well as alone. The leading drift is grown in any
+        case. A search that resigns ends after the others have been grown, or before.
         """
         size = best.explanation.size
         seeds = self._seeds(best)
@@ -70,7 +71,7 @@ class Search(Attempts):
             self._lead_tried_harder(seeds, size + 1)
             if self._accounted_for(best):
                 return
-            if self._likeliest_accounts_for_all():
+            if self._drifts_expanded(seeds[:1]) or self._likeliest_accounts_for_all():
                 return
             if self.resigned or self._drifts_expanded(seeds):
                 return
@@ -109,7 +110,8 @@ class Search(Attempts):
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
         """Refine the leading explanation of a `size`, if its cost has many local minima.
 
-        Ripples come first: they are found in less time than one minimum among many.
+        Ripples come first: they are found in less time than one minimum among many. If what leads is still not
+        adequate, its drift may be the wrong one.
         """
         leading = self.best_of_size(size)
         if leading is None or adequate(leading):
@@ -118,6 +120,22 @@ class Search(Attempts):
         if jumps(leading.explanation) and not self.completed(size):
             # a ripple that led may have been refined by then
             self.refine_alone(self.fits[leading.explanation])
+            self._exchange_drift(self.fits[leading.explanation])
+
+    def _exchange_drift(self, fit: Fit) -> None:
+        """Put each other drift in the place of the one beside the effects of a `fit`, and refine what is better so.
+
+        A wrong drift may stand in for the true one along most of a recording, while the effect's values are nearly
+        right.
+        """
+        explanation = fit.explanation
+        if adequate(fit) or len(explanation.drifted) != 1:
+            return
+        among = with_drifts(Explanation(variants=explanation.variants), self.drifts, 1)
+        others = [other for other in among if other != explanation]
+        best = min(self.pool.map(lambda other: self.add(other, fit.values), others), key=lambda each: each.chi2)
+        if best.chi2 < fit.chi2:
+            self.refine_alone(best)
 
     def _followed(self, best: Fit) -> bool:
         """Grow the leading fit of the next size, if it leaves far less than `best`; gives whether one is adequate.
@@ -191,9 +209,9 @@ class Search(Attempts):
         """Whether the most likely explanation beside a remainder is adequate when fitted without one; evaluated once.
 
         It is not refined if another explanation has a far smaller error. A search that resigns does so here, without
-        refining anything, if too much is left and nothing comes near the noise. It also resigns if the best fit has no
-        other local minimum to look for: its cost is smooth, or they have been searched. The additions for which linear
-        steps promise most have been fitted by then.
+        refining anything, if too much is left and nothing comes near the noise. It also resigns if the cost of the best
+        fit is smooth: no other local minimum is to be looked for. The additions for which linear steps promise most
+        have been fitted by then.
         """
         if self.beside is not None:
             return False
@@ -210,8 +228,7 @@ class Search(Attempts):
             if adequate(self.fits[reached.explanation]):
                 return True
         if self.beam.resigns:
-            nearest = self.nearest()
-            self.resigned = in_vain or nearest.refined or not jumps(nearest.explanation)
+            self.resigned = in_vain or not jumps(self.nearest().explanation)
         return False
 
     def _least(self) -> float:

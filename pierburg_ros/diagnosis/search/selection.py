@@ -6,15 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.likelihood import EXPLAINED, TIED
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
+from pierburg_ros.estimation.likelihood import EXPLAINED, SIGNIFICANT, TIED
 
-SIGNIFICANT = 60.0
-"""Gain in chi2, in effective samples, that one more quantity must bring. Measured: with it, none of n = 100 blind
-trials without an effect is given one, and 406 of 411 shown effects are named. It is four times `PROMISING`. The same
-threshold decides whether a residual is correlated in time. The evidence for that is 18 at most in white noise (n =
-3000, 22,500 samples each), and 48 in noise whose neighbours are correlated by 0.3 (n = 200). It is 21 in the residuals
-of n = 65 right explanations, and 784 in that of a wrong one that left 1.01 times the noise."""
 PROMISING = 15.0
 """Gain in chi2 over an adequate explanation that a first fit must promise to be followed up. Measured: in n = 13
 recordings without an effect, drifted ones included, none gained as much."""
@@ -40,14 +34,6 @@ def betters(larger: Fit, smaller: Fit, estimator: Estimator) -> bool:
     if not gains_enough(smaller, larger, more):
         return False
     return estimator.validation_misfit(larger) <= _highest(estimator.validation_misfit(smaller), larger)
-
-
-def adequate(fit: Fit) -> bool:
-    """Whether an explanation is adequate: it leaves only noise, of a size that may be estimated too low.
-
-    A residual that is correlated in time counts as one more quantity, with the same threshold.
-    """
-    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
 
 
 def names_all(fit: Fit) -> bool:

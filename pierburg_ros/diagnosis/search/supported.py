@@ -12,12 +12,12 @@ from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.growing import drifted, grown
 from pierburg_ros.diagnosis.search.reversals import Play, play_at_reversals
 from pierburg_ros.diagnosis.search.scored import Scored, plausible, scored, strange, unseen
-from pierburg_ros.diagnosis.search.selection import SIGNIFICANT
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, quantities
+from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.plant import Model
 
 MOST = 4

@@ -16,8 +16,7 @@ from scipy.linalg import qr
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.needed import needed
-from pierburg_ros.diagnosis.search.selection import adequate
-from pierburg_ros.estimation.estimator import Estimator, Fit
+from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant, without
 
 INDEPENDENT = 1e-3

@@ -11,11 +11,10 @@ from pierburg_ros.diagnosis.remainder.remainder import Remainder
 from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.schema import Verdict
 from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
 from pierburg_ros.effects import ROUNDING, STEP
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
 from pierburg_ros.estimation.likelihood import OFF_GRID

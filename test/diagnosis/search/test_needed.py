@@ -13,10 +13,9 @@ from pierburg_ros.diagnosis.search import found, together
 from pierburg_ros.diagnosis.search.attempts import Attempts
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.needed import needed
-from pierburg_ros.diagnosis.search.selection import adequate
 from pierburg_ros.diagnosis.search.together import drift_together
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))

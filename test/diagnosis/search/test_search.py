@@ -18,12 +18,12 @@ from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.diagnosis.search.scored import Scored
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.search import Search
-from pierburg_ros.diagnosis.search.selection import TIED, adequate
+from pierburg_ros.diagnosis.search.selection import TIED
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy
-from pierburg_ros.estimation.estimator import Fit
+from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))
@@ -142,6 +142,9 @@ class Grown(Search):
     def _fit_ripples(self, seeds: Sequence[Fit]) -> None:
         self.before_ripples.setdefault(seeds[0].explanation.size + 1, [*self.seeds])
 
+    def _exchange_drift(self, fit: Fit) -> None:
+        pass
+
     def _all_drift(self) -> bool:
         return False
 
@@ -237,6 +240,7 @@ def test_what_leads_is_refined_if_its_events_jump_however_much_it_leaves(
     refined = list[Fit]()
     monkeypatch.setattr(empty, "refine_alone", refined.append)
     monkeypatch.setattr(empty, "_fit_ripples", lambda _: None)
+    monkeypatch.setattr(empty, "_exchange_drift", lambda _: None)
     single = empty.keep(made_up(FRICTION, 74.0, NOMINAL))
     leading = empty.keep(made_up(FRICTION.plus(Variant(effect, ("x",))), 39.0, NOMINAL))
     empty._lead_tried_harder([single], 2)
@@ -251,8 +255,32 @@ def test_what_a_ripple_has_refined_is_not_refined_again(empty: Search, monkeypat
     lower = replace(made_up(leading.explanation, 9.0, NOMINAL), refined=True)
     monkeypatch.setattr(empty, "_fit_ripples", lambda _: empty.keep(lower))
     monkeypatch.setattr(empty, "_refine", lambda _, fit: again.append(fit))
+    monkeypatch.setattr(empty, "_exchange_drift", lambda _: None)
     empty._lead_tried_harder([single], 2)
     assert not again
+
+
+@pytest.mark.parametrize(("other", "refined"), [(30.0, 2), (50.0, 1)])
+def test_each_other_drift_gets_its_chance_beside_a_refined_effect_whose_events_jump(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, other: float, refined: int
+) -> None:
+    """What is better so is refined in turn; each drift begins at the values of the effect."""
+    again, starts = list[Explanation](), dict[Explanation, Any]()
+    exchanged = PAIRS[3]
+
+    def add(explanation: Explanation, start: Any) -> Fit:
+        starts[explanation] = start["spring_preload"]
+        return empty.keep(made_up(explanation, other if explanation == exchanged else 90.0, NOMINAL))
+
+    monkeypatch.setattr(empty, "_fit_ripples", lambda _: None)
+    monkeypatch.setattr(empty, "refine_alone", lambda fit: again.append(fit.explanation))
+    monkeypatch.setattr(empty, "add", add)
+    single = empty.keep(made_up(FRICTION, 74.0, NOMINAL))
+    leading = empty.keep(made_up(FRICTION.plus(ONES[3].variants[0]), 39.0, NOMINAL, {"spring_preload": 0.3}))
+    empty._lead_tried_harder([single], 2)
+    assert again == [leading.explanation, exchanged][:refined]
+    assert len(starts) == len(empty.drifts) - 1
+    assert set(starts.values()) == {0.3}
 
 
 @pytest.mark.parametrize(("reached", "kept"), [(3.0, 3.0), (9.0, 6.0)])
@@ -320,33 +348,25 @@ STICKS, LAGS = (Explanation((), (Variant(one, ("x",)),)) for one in ("static_fri
 
 
 @pytest.mark.parametrize(
-    ("nearest", "refined", "left", "beside", "resigned"),
+    ("nearest", "left", "beside", "resigned"),
     [
-        (STICKS, False, 5000.0, 30.0, True),
-        (STICKS, False, 100.0, 30.0, False),
-        (STICKS, False, 5000.0, 3.0, False),
-        (STICKS, True, 5000.0, 3.0, True),
-        (STICKS, True, 5000.0, 1.0, False),
-        (LAGS, False, 100.0, 30.0, True),
-        (LAGS, False, 100.0, 3.0, True),
-        (LAGS, False, 100.0, 1.0, False),
+        (STICKS, 5000.0, 30.0, True),
+        (STICKS, 100.0, 30.0, False),
+        (STICKS, 5000.0, 3.0, False),
+        (STICKS, 5000.0, 1.0, False),
+        (LAGS, 100.0, 30.0, True),
+        (LAGS, 100.0, 3.0, True),
+        (LAGS, 100.0, 1.0, False),
     ],
 )
-def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_no_other_minimum_is_near(
-    empty: Search,
-    monkeypatch: pytest.MonkeyPatch,
-    nearest: Explanation,
-    refined: bool,
-    left: float,
-    beside: float,
-    resigned: bool,
+def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_the_nearest_has_no_other_minimum(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, nearest: Explanation, left: float, beside: float, resigned: bool
 ) -> None:
     """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted by itself, leaves `beside` noises."""
     reached = made_up(nearest, 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
-    fitted = replace(made_up(nearest, beside, NOMINAL), refined=refined)
-    monkeypatch.setattr(empty, "add", lambda *_: empty.keep(fitted))
+    monkeypatch.setattr(empty, "add", lambda *_: empty.keep(made_up(nearest, beside, NOMINAL)))
     monkeypatch.setattr(empty, "refine", lambda _: None)
     empty.beam = Beam(resigns=True)
     assert empty._likeliest_accounts_for_all() == (beside == 1.0)
@@ -394,7 +414,7 @@ def test_one_smooth_effect_that_needs_more_than_all_drifts_is_not_tried_beside_f
 
 @pytest.mark.parametrize(
     ("one", "raced", "refined"),
-    [("backlash", 1.0, True), ("backlash", 2.0, False), ("sensor_lag", 1.0, False)],
+    [("backlash", 1.0, True), ("backlash", 7.0, False), ("sensor_lag", 1.0, False)],
     ids=["accounted for its samples", "did not", "nothing jumps"],
 )
 def test_what_accounted_for_the_samples_it_raced_on_is_refined(
@@ -408,8 +428,34 @@ def test_what_accounted_for_the_samples_it_raced_on_is_refined(
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, 6.0, NOMINAL)))
     given: list[Fit] = []
     monkeypatch.setattr(empty, "refine", given.extend)
+    monkeypatch.setattr(empty, "refine_alone", lambda _: None)
     empty.race([candidate])
     assert [fit.explanation for fit in given] == ([explanation] if refined else [])
+
+
+@pytest.mark.parametrize(
+    ("one", "raced", "whole", "refined"),
+    [
+        ("backlash", 3.0, 8.5, True),
+        ("backlash", 5.0, 8.5, False),
+        ("backlash", 3.0, 3.5, False),
+        ("supply_sag", 3.0, 8.5, False),
+    ],
+    ids=["lost in the rest", "gained little", "still far below", "nothing jumps"],
+)
+def test_what_led_a_race_by_far_and_lost_that_in_the_rest_of_the_recording_is_refined(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, one: str, raced: float, whole: float, refined: bool
+) -> None:
+    """Its base leaves nine noises in the race and in all: a slip at the wrong moment displaces what follows."""
+    explanation = Explanation((), (Variant(one, ("x",)),))
+    base = empty.keep(made_up(NOTHING, 9.0, NOMINAL))
+    candidate = Candidate(explanation, explanation.variants[0], empty.whole, base, ())
+    monkeypatch.setattr(attempts, "winners", lambda *_: [made_up(explanation, raced, NOMINAL)])
+    monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, whole, NOMINAL)))
+    given: list[Fit] = []
+    monkeypatch.setattr(empty, "refine_alone", given.append)
+    empty.race([candidate])
+    assert [fit.explanation for fit in given] == [explanation] * refined
 
 
 def test_to_a_fit_just_above_the_noise_nothing_is_added(short: Data, pool: Executor) -> None:
