@@ -152,8 +152,9 @@ class Attempts:
     def race(self, candidates: Sequence[Candidate], most: int | None = None) -> list[Fit]:
         """Full fits of the candidates that win the race.
 
-        A candidate may be adequate on the samples of the race, or lead it with far less than its base leaves, but not
-        as a full fit. If its cost has many local minima, it has stopped in one of them since, and is refined.
+        A candidate may be adequate on the samples of the race, but not as a full fit. If its cost has many local
+        minima, it has stopped in one of them since, and is refined. So is an effect that leads the race beside drifts,
+        with far less than they leave alone.
         """
         if not candidates:
             return []
@@ -175,10 +176,14 @@ class Attempts:
         return [self.fits[fit.explanation] for fit in fits]
 
     def _lost(self, brief: Fit, base: Fit) -> bool:
-        """Whether a fit lost to slips in the rest of the recording what its `brief` fit had gained on its `base`."""
-        fit = self.fits[brief.explanation]
-        gained = far_below(brief, base) and not far_below(fit, self.fits[base.explanation])
-        return gained and jumps(fit.explanation) and not self.completed(fit.explanation.size)
+        """Whether an effect beside drifts lost to slips in the rest of the recording what its `brief` fit had gained.
+
+        It gained that on its `base`, the drifts alone.
+        """
+        fit, begun = self.fits[brief.explanation], base.explanation
+        gained = far_below(brief, base) and not far_below(fit, self.fits[begun])
+        beside = bool(begun.drifted) and not begun.variants
+        return beside and gained and jumps(fit.explanation) and not self.completed(fit.explanation.size)
 
     def refine_leading(self, size: int) -> None:
         """Refine the best fits of a `size`, if the leading one is adequate or leaves far less than every smaller one.

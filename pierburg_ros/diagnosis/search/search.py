@@ -96,7 +96,7 @@ class Search(Attempts):
     def _accounted_for(self, best: Fit) -> bool:
         """Whether an adequate explanation is known, or is found by growing the leading one or with all drifts together.
 
-        If a ripple leads, it is first fitted between rests.
+        If a ripple leads, it is first fitted between rests. What may only have stopped too early is refined first.
         """
         size = best.explanation.size
         if self.completed(size) or self.completed(size + 1):
@@ -105,7 +105,9 @@ class Search(Attempts):
         rhythmic = leading is not None and any(EFFECT[one].ripple for one in leading.explanation.effects)
         if rhythmic and size + 1 not in self.rippled:
             return False
-        return self._followed(best) or self._all_drift()
+        if leading is not None and self._stopped_early(size + 1):
+            self.refine_alone(leading)
+        return self.completed(size + 1) or self._followed(best) or self._all_drift()
 
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
         """Refine the leading explanation of a `size`, if its cost has many local minima.

@@ -233,6 +233,22 @@ def test_a_ripple_is_refined_where_it_comes_near_along_recordings_or_between_res
     assert [fit.values["sensor_lag.time_constant"] for fit in again] == [0.012] * refined
 
 
+@pytest.mark.parametrize(
+    ("effect", "left", "refined"), [("backlash", 4.0, 1), ("backlash", 6.0, 0), ("sensor_lag", 4.0, 0)]
+)
+def test_what_leads_near_the_noise_is_refined_before_all_drifts_are_fitted(
+    empty: Search, monkeypatch: pytest.MonkeyPatch, effect: str, left: float, refined: int
+) -> None:
+    """Only where events jump it may have stopped too early; what is adequate then ends the search of its size."""
+    pair = FRICTION.plus(Variant(effect, ("x",)))
+    monkeypatch.setattr(empty, "refine_alone", lambda fit: empty.keep(made_up(fit.explanation, 1.0, NOMINAL)))
+    monkeypatch.setattr(empty, "_followed", lambda _: False)
+    monkeypatch.setattr(empty, "_all_drift", lambda: False)
+    single = empty.keep(made_up(FRICTION, 20.0, NOMINAL))
+    empty.keep(made_up(pair, left, NOMINAL))
+    assert empty._accounted_for(single) == bool(refined)
+
+
 @pytest.mark.parametrize("effect", ["backlash", "sensor_lag"])
 def test_what_leads_is_refined_if_its_events_jump_however_much_it_leaves(
     empty: Search, monkeypatch: pytest.MonkeyPatch, effect: str
@@ -434,21 +450,29 @@ def test_what_accounted_for_the_samples_it_raced_on_is_refined(
 
 
 @pytest.mark.parametrize(
-    ("one", "raced", "whole", "refined"),
+    ("one", "drifted", "raced", "whole", "refined"),
     [
-        ("backlash", 3.0, 8.5, True),
-        ("backlash", 5.0, 8.5, False),
-        ("backlash", 3.0, 3.5, False),
-        ("supply_sag", 3.0, 8.5, False),
+        ("backlash", FRICTION.drifted, 3.0, 8.5, True),
+        ("backlash", FRICTION.drifted, 5.0, 8.5, False),
+        ("backlash", FRICTION.drifted, 3.0, 3.5, False),
+        ("supply_sag", FRICTION.drifted, 3.0, 8.5, False),
+        ("backlash", (), 3.0, 8.5, False),
     ],
-    ids=["lost in the rest", "gained little", "still far below", "nothing jumps"],
+    ids=["lost in the rest", "gained little", "still far below", "nothing jumps", "no drift"],
 )
 def test_what_led_a_race_by_far_and_lost_that_in_the_rest_of_the_recording_is_refined(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, one: str, raced: float, whole: float, refined: bool
+    empty: Search,
+    monkeypatch: pytest.MonkeyPatch,
+    one: str,
+    drifted: tuple[str, ...],
+    raced: float,
+    whole: float,
+    refined: bool,
 ) -> None:
-    """Its base leaves nine noises in the race and in all: a slip at the wrong moment displaces what follows."""
-    explanation = Explanation((), (Variant(one, ("x",)),))
-    base = empty.keep(made_up(NOTHING, 9.0, NOMINAL))
+    """The drift leaves nine noises in the race and in all: a slip at the wrong moment displaces what follows."""
+    drift = Explanation(drifted)
+    explanation = Explanation(drifted, (Variant(one, ("x",)),))
+    base = empty.keep(made_up(drift, 9.0, NOMINAL))
     candidate = Candidate(explanation, explanation.variants[0], empty.whole, base, ())
     monkeypatch.setattr(attempts, "winners", lambda *_: [made_up(explanation, raced, NOMINAL)])
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, whole, NOMINAL)))
