@@ -39,9 +39,8 @@ times the usual one was tried on a trial of static friction (n = 1) and left it 
 ROUNDS = 6
 """Largest number of rounds of descents. Work: the search ends sooner after two rounds without a gain; not varied."""
 AGAIN = 0.5
-"""Share of the cost below which the search between rests, or of a population, starts again, if a residual remains.
-Chosen: a fall by half shows that the search began in another valley; not varied. A population came from 2.7 times the
-noise to 1.09, and a second one from there to the true values."""
+"""Share of the cost below which the search between rests starts again, if a residual remains. Chosen: a fall by half
+shows that the search began in another valley; not varied."""
 NEARLY = 5.0
 """Training error over noise up to which the best explanation may only have stopped too early: a population continues,
 and a search does not resign. A ripple is refined if it comes so near between rests. The most likely explanation may
@@ -105,10 +104,8 @@ def _searched(estimator: Estimator, fit: Fit, leaping: bool) -> Fit:
     while lower.ratio > EXPLAINED and lower.chi2 < AGAIN * fit.chi2:
         fit = lower
         lower = _descended_from(estimator, fit, _descended_between_rests(estimator, fit, leaping=False))
-    begun = np.inf
-    while not adequate(lower) and lower.ratio < NEARLY and lower.chi2 < AGAIN * begun:
-        begun, lower = lower.chi2, _evolved(estimator, lower)
-    return lower
+    near = not adequate(lower) and lower.ratio < NEARLY
+    return _evolved(estimator, lower) if near else lower
 
 
 def lowered(estimator: Estimator, fit: Fit) -> Fit:

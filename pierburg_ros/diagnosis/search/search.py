@@ -105,15 +105,25 @@ class Search(Attempts):
         rhythmic = leading is not None and any(EFFECT[one].ripple for one in leading.explanation.effects)
         if rhythmic and size + 1 not in self.rippled:
             return False
-        if leading is not None and self._stopped_early(size + 1):
+        return self._finished(size + 1) or self._followed(best) or self._all_drift()
+
+    def _finished(self, size: int) -> bool:
+        """Whether the leading explanation of a `size` is adequate, once refined if it may have stopped too early."""
+        leading = self.best_of_size(size)
+        if leading is not None and self._stopped_early(size):
+            self._refine_and_exchange(leading)
+        return self.completed(size)
+
+    def _refine_and_exchange(self, leading: Fit) -> None:
+        """Refine what leads, once; if it is still not adequate, its drift may be the wrong one."""
+        if not leading.refined:
             self.refine_alone(leading)
-        return self.completed(size + 1) or self._followed(best) or self._all_drift()
+            self._exchange_drift(self.fits[leading.explanation])
 
     def _lead_tried_harder(self, seeds: Sequence[Fit], size: int) -> None:
         """Refine the leading explanation of a `size`, if its cost has many local minima.
 
-        Ripples come first: they are found in less time than one minimum among many. If what leads is still not
-        adequate, its drift may be the wrong one.
+        Ripples come first: they are found in less time than one minimum among many.
         """
         leading = self.best_of_size(size)
         if leading is None or adequate(leading):
@@ -121,8 +131,7 @@ class Search(Attempts):
         self._fit_ripples(seeds)
         if jumps(leading.explanation) and not self.completed(size):
             # a ripple that led may have been refined by then
-            self.refine_alone(self.fits[leading.explanation])
-            self._exchange_drift(self.fits[leading.explanation])
+            self._refine_and_exchange(self.fits[leading.explanation])
 
     def _exchange_drift(self, fit: Fit) -> None:
         """Put each other drift in the place of the one beside the effects of a `fit`, and refine what is better so.
@@ -135,7 +144,8 @@ class Search(Attempts):
             return
         among = with_drifts(Explanation(variants=explanation.variants), self.drifts, 1)
         others = [other for other in among if other != explanation]
-        best = min(self.pool.map(lambda other: self.add(other, fit.values), others), key=lambda each: each.chi2)
+        exchanged = self.pool.map(lambda other: self.add(other, fit.values), others)
+        best = min(exchanged, key=lambda each: each.chi2, default=fit)
         if best.chi2 < fit.chi2:
             self.refine_alone(best)
 
@@ -155,7 +165,7 @@ class Search(Attempts):
         self._fit_ripples([leading])
         if not self.completed(size + 1):
             self.expand(leading)
-        return self.completed(size + 1)
+        return self._finished(size + 1)
 
     def _all_drift(self) -> bool:
         """Whether an explanation is adequate where all parameters drift that recordings distinguish; evaluated once."""
