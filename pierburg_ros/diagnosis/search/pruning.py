@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from functools import partial
 
 from pierburg_ros.diagnosis.search.attempts import Attempts, near
+from pierburg_ros.diagnosis.search.candidates import with_drifts
 from pierburg_ros.diagnosis.search.selection import names_all
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, quantities, without
+from pierburg_ros.estimation.explanation import Explanation, jumps, quantities, without
 from pierburg_ros.estimation.refinement import NEARLY
 
 
@@ -51,5 +52,4 @@ def _simpler(explanation: Explanation, drifts: tuple[str, ...]) -> list[Explanat
 
 def _drifting_too(rests: Iterable[Explanation], drifts: tuple[str, ...]) -> list[Explanation]:
     """Each of the `rests` with each of the `drifts` added."""
-    found = (Explanation((*rest.drifted, name), rest.variants, rest.changed) for rest in rests for name in drifts)
-    return [each for each in dict.fromkeys(canonical(each, drifts) for each in found) if each is not None]
+    return list(dict.fromkeys(each for rest in rests for each in with_drifts(rest, drifts, 1)))

@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, canonical, jumps
+from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, without
 from pierburg_ros.estimation.refinement import NEARLY
 from pierburg_ros.plant import Model
 
@@ -139,11 +139,11 @@ class Search(Attempts):
         A wrong drift may stand in for the true one along most of a recording, while the effect's values are nearly
         right.
         """
-        explanation = fit.explanation
-        if adequate(fit) or len(explanation.drifted) != 1:
+        drifted = fit.explanation.drifted
+        if adequate(fit) or len(drifted) != 1:
             return
-        among = with_drifts(Explanation(variants=explanation.variants), self.drifts, 1)
-        others = [other for other in among if other != explanation]
+        among = with_drifts(without(fit.explanation, drifted[0]), self.drifts, 1)
+        others = [other for other in among if other != fit.explanation]
         exchanged = self.pool.map(lambda other: self.add(other, fit.values), others)
         best = min(exchanged, key=lambda each: each.chi2, default=fit)
         if best.chi2 < fit.chi2:
@@ -269,6 +269,6 @@ class Search(Attempts):
             grown = ((canonical(begin.explanation.plus(variant), self.drifts), begin) for begin in begins)
             bases = {explanation: begin for explanation, begin in grown if explanation is not None}
             for fit, smooth in between_rests(self.whole, variant, ripple, bases, self.pool):
-                near = min(fit.ratio, smooth.ratio) < NEARLY
-                if not self.keep(fit).refined and near and not self.completed(fit.explanation.size):
+                kept, near = self.keep(fit), min(fit.ratio, smooth.ratio) < NEARLY
+                if near and not kept.refined and not self.completed(fit.explanation.size):
                     self.refine_alone(self.whole.at(fit.explanation, smooth.values))

@@ -31,9 +31,7 @@ PLAY = 30.0
 """Gain in -2 log likelihood from which reversals show a play of the sensor. Measured: beside the nominal and beside the
 re-estimated model. Of n = 108 blind trials without a play, four show 15 to 22 beside both. Five show more: delays, an
 inductance and gears, which better fits remove. Of 13 real recordings none shows 6. A play of 2.3 degrees put into them
-shows 39 to 367 in five, and 6 or less where the shaft reverses too seldom.
-"""
-
+shows 39 to 367 in five, and 6 or less where the shaft reverses too seldom."""
 CONFIRMED = 0.5
 """Share of an effect's gain on the training samples, scaled to the number of validation samples, that these must show
 as well, where an effect is found beside a disturbance. Derived: halfway between a quantity that fits the training

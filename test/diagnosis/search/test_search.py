@@ -364,25 +364,33 @@ STICKS, LAGS = (Explanation((), (Variant(one, ("x",)),)) for one in ("static_fri
 
 
 @pytest.mark.parametrize(
-    ("nearest", "left", "beside", "resigned"),
+    ("nearest", "refined", "left", "beside", "resigned"),
     [
-        (STICKS, 5000.0, 30.0, True),
-        (STICKS, 100.0, 30.0, False),
-        (STICKS, 5000.0, 3.0, False),
-        (STICKS, 5000.0, 1.0, False),
-        (LAGS, 100.0, 30.0, True),
-        (LAGS, 100.0, 3.0, True),
-        (LAGS, 100.0, 1.0, False),
+        (STICKS, False, 5000.0, 30.0, True),
+        (STICKS, False, 100.0, 30.0, False),
+        (STICKS, False, 5000.0, 3.0, False),
+        (STICKS, True, 5000.0, 3.0, False),
+        (STICKS, True, 5000.0, 1.0, False),
+        (LAGS, False, 100.0, 30.0, True),
+        (LAGS, False, 100.0, 3.0, True),
+        (LAGS, False, 100.0, 1.0, False),
     ],
 )
 def test_it_resigns_where_much_is_left_that_nothing_accounts_for_or_the_nearest_has_no_other_minimum(
-    empty: Search, monkeypatch: pytest.MonkeyPatch, nearest: Explanation, left: float, beside: float, resigned: bool
+    empty: Search,
+    monkeypatch: pytest.MonkeyPatch,
+    nearest: Explanation,
+    refined: bool,
+    left: float,
+    beside: float,
+    resigned: bool,
 ) -> None:
     """Of 10,000 in -2 log likelihood so much is left; what was reached, fitted by itself, leaves `beside` noises."""
     reached = made_up(nearest, 1.0, NOMINAL)
     scored = Scored(reached, Discrepancy(5.0, 1.0, 1.0), left + reached.solution.residual.size)
     monkeypatch.setattr(module, "supported", lambda *_: Beside(scored, 10_000.0, Supported(NOMINAL, scored, {})))
-    monkeypatch.setattr(empty, "add", lambda *_: empty.keep(made_up(nearest, beside, NOMINAL)))
+    fitted = replace(made_up(nearest, beside, NOMINAL), refined=refined)
+    monkeypatch.setattr(empty, "add", lambda *_: empty.keep(fitted))
     monkeypatch.setattr(empty, "refine", lambda _: None)
     empty.beam = Beam(resigns=True)
     assert empty._likeliest_accounts_for_all() == (beside == 1.0)
@@ -430,7 +438,7 @@ def test_one_smooth_effect_that_needs_more_than_all_drifts_is_not_tried_beside_f
 
 @pytest.mark.parametrize(
     ("one", "raced", "refined"),
-    [("backlash", 1.0, True), ("backlash", 7.0, False), ("sensor_lag", 1.0, False)],
+    [("backlash", 1.0, True), ("backlash", 2.0, False), ("sensor_lag", 1.0, False)],
     ids=["accounted for its samples", "did not", "nothing jumps"],
 )
 def test_what_accounted_for_the_samples_it_raced_on_is_refined(
@@ -444,7 +452,6 @@ def test_what_accounted_for_the_samples_it_raced_on_is_refined(
     monkeypatch.setattr(empty, "add", lambda explanation, _: empty.keep(made_up(explanation, 6.0, NOMINAL)))
     given: list[Fit] = []
     monkeypatch.setattr(empty, "refine", given.extend)
-    monkeypatch.setattr(empty, "refine_alone", lambda _: None)
     empty.race([candidate])
     assert [fit.explanation for fit in given] == ([explanation] if refined else [])
 
