@@ -1,7 +1,6 @@
 """An effect is needed where the recordings are less likely without it, though something may remain then."""
 
-from collections.abc import Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -22,12 +21,6 @@ LAG = Variant("sensor_lag", ("time_constant",))
 LOAD = Variant("external_load", ("torque", "start", "end"))
 BENT = {"external_load.torque": -0.002, "external_load.start": 0.3, "external_load.end": 8.0}
 STRONG = {"external_load.torque": 0.05, "external_load.start": 0.3, "external_load.end": 8.0}
-
-
-@pytest.fixture(scope="module")
-def pool() -> Iterator[Executor]:
-    with ThreadPoolExecutor(2) as threads:
-        yield threads
 
 
 def attempts_on(data: Data, pool: Executor) -> Attempts:

@@ -1,7 +1,6 @@
 """What could stand for an effect by other means is fitted from where the effect fades."""
 
-from collections.abc import Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -20,12 +19,6 @@ from pierburg_ros.recording import Channel, Recording
 
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 PLAY = Variant("backlash", ("gap", "motor_friction_share"))
-
-
-@pytest.fixture(scope="module")
-def pool() -> Iterator[Executor]:
-    with ThreadPoolExecutor(2) as threads:
-        yield threads
 
 
 def with_rivals(search: Search, best: Fit, drifts: tuple[str, ...]) -> Search:
