@@ -18,19 +18,32 @@ class Alternative:
 
 
 def alternatives(found: Found) -> list[Alternative]:
-    """What may replace each quantity of the chosen explanation: one other, or two parameters for an effect."""
+    """What may replace each quantity of the chosen explanation, by the explanations that fit as well.
+
+    Where such an explanation lacks several of the chosen quantities, all that it has instead replaces each effect among
+    them. It then has as many quantities as the chosen one at most.
+    """
     own = set(quantities(found.chosen.explanation))
-    alternatives = []
+    listed = dict[Alternative, None]()
     for fit in tied(found.chosen, found.fits.values(), found.estimator):
         other = set(quantities(fit.explanation))
-        lacking, added = own - other, other - own
-        if len(lacking) != 1 or len(added) > 2:
-            continue
-        quantity = next(iter(lacking))
-        if len(added) == 2 and (isinstance(quantity, str) or any(isinstance(a, Variant) for a in added)):
-            continue
-        names = tuple(sorted(item if isinstance(item, str) else item.effect for item in added))
-        same_effect = isinstance(quantity, Variant) and names == (quantity.effect,)
-        if not same_effect and Alternative(quantity, names) not in alternatives:
-            alternatives.append(Alternative(quantity, names))
-    return alternatives
+        added = other - own
+        names = tuple(sorted(each if isinstance(each, str) else each.effect for each in added))
+        for quantity in replaced(own - other, added):
+            if isinstance(quantity, str) or quantity.effect not in names:
+                listed[Alternative(quantity, names)] = None
+    return list(listed)
+
+
+def replaced(lacking: set[Quantity], added: set[Quantity]) -> list[Quantity]:
+    """Those of the `lacking` quantities for which the `added` ones stand.
+
+    One quantity is replaced by one other, an effect by two drifting parameters too. Of several, the effects are
+    replaced by no more quantities than there are.
+    """
+    effects = sorted((each for each in lacking if isinstance(each, Variant)), key=lambda each: each.effect)
+    if len(lacking) > 1:
+        return [*effects] if len(added) <= len(lacking) else []
+    if len(added) == 2 and not any(isinstance(each, Variant) for each in added):
+        return [*effects]
+    return [*lacking] if len(added) <= 1 else []
