@@ -1,5 +1,7 @@
 """Why an effect is believed, and what to record next, in words with their numbers."""
 
+import math
+
 import pytest
 from support.fits import made_up
 from support.recordings import NOMINAL
@@ -75,6 +77,20 @@ def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -
     )  # fmt: skip
     said = summary("parameter_drift", [], {"spring_preload": spring}, [], fit, "V")
     assert "instead of 0.1, or coulomb friction, which fit alike. " in said
+
+
+@pytest.mark.parametrize(("after", "warned"), [(0.05, False), (0.105, False), (0.15, True)])
+def test_a_corrected_model_that_predicts_worse_is_not_recommended(after: float, warned: bool) -> None:
+    """On unseen data the model as described is off by 0.1."""
+    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.09, final_rmse=after)
+    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
+    assert ("use the model as described" in summary("unexplained", [TIED], {}, [], fit, "V")) == warned
+
+
+def test_an_error_that_is_not_finite_is_not_known() -> None:
+    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.09, final_rmse=math.inf)
+    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
+    assert "is not known; the noise is 0.004 V." in summary("unexplained", [], {}, [], fit, "V")
 
 
 @pytest.mark.parametrize(
