@@ -86,6 +86,11 @@ Quantity = str | Variant
 """A drifted or changed parameter, or an effect."""
 
 
+def id_of(quantity: Quantity) -> str:
+    """Name of the parameter, or id of the effect."""
+    return quantity if isinstance(quantity, str) else quantity.effect
+
+
 def quantities(explanation: Explanation) -> tuple[Quantity, ...]:
     """The quantities that an explanation changes."""
     changed = (explanation.changed,) if explanation.changed else ()

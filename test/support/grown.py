@@ -20,7 +20,6 @@ ONES = [
 ]
 PAIRS = [Explanation(("spring_preload",), one.variants) for one in ONES]
 FRICTION = Explanation(("coulomb_friction",))
-STICKS, LAGS = (Explanation((), (Variant(one, ("x",)),)) for one in ("static_friction", "sensor_lag"))
 
 
 class Grown(Search):

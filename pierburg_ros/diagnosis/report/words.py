@@ -124,20 +124,6 @@ def untestable(mark: float) -> str:
     )
 
 
-def unseen(fit: FitQuality, unit: str) -> str:
-    """How the error changes on data that no fit has seen, and a warning if it grows by more than chance."""
-    before, after, floor = fit.validation.nominal_rmse, fit.validation.final_rmse, fit.noise_floor
-    if before is None or after is None:
-        return f"The error on data the fit has not seen is not known; the noise is {floor:.2g} {unit}."
-    text = (
-        f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
-        f"the noise is {floor:.2g} {unit}."
-    )
-    if after > EXPLAINED * before:
-        text += " It grows: for predictions use the model as described, not the corrected one."
-    return text
-
-
 def summary(
     verdict: Verdict,
     effects: Sequence[Effect],
@@ -148,7 +134,7 @@ def summary(
     stopped: bool = False,
 ) -> str:
     """One paragraph for a technician; `stopped`: the search ended before it had tried the whole catalogue."""
-    errors = unseen(fit, unit)
+    errors = _unseen_error(fit, unit)
     drifts = [
         quantity(name, p) + f" instead of {p.nominal:.4g}" + _or(p.indistinguishable_from)
         for name, p in parameters.items()
@@ -282,3 +268,17 @@ def _either(ties: Sequence[Sequence[str]]) -> str:
 
 def _listed(names: Sequence[str]) -> str:
     return " and ".join(name.replace("_", " ") for name in names)
+
+
+def _unseen_error(fit: FitQuality, unit: str) -> str:
+    """How the error changes on data that no fit has seen, and a warning if it grows by more than chance."""
+    before, after, floor = fit.validation.nominal_rmse, fit.validation.final_rmse, fit.noise_floor
+    if before is None or after is None:
+        return f"The error on data the fit has not seen is not known; the noise is {floor:.2g} {unit}."
+    text = (
+        f"On data the fit has not seen the error goes from {before:.3g} to {after:.3g} {unit}; "
+        f"the noise is {floor:.2g} {unit}."
+    )
+    if after > EXPLAINED * before:
+        text += " It grows: for predictions use the model as described, not the corrected one."
+    return text

@@ -16,7 +16,7 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, quantities
+from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, id_of, quantities
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.plant import Model
 
@@ -272,7 +272,7 @@ def _replacements(
     for look in (grown, drifted):
         for each in look(weighing.data, weighing.nominal, rest, weighing.pool, progress):
             added = [one for one in quantities(each.fit.explanation) if one not in own]
-            names = tuple(one if isinstance(one, str) else one.effect for one in added)
+            names = tuple(map(id_of, added))
             if names != (effect.effect,):
                 rivals.setdefault(names, each)
     return dict(sorted(rivals.items(), key=lambda rival: rival[1].cost))

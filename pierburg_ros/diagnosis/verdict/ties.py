@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.selection import tied
-from pierburg_ros.estimation.explanation import Quantity, Variant, quantities
+from pierburg_ros.estimation.explanation import Quantity, Variant, id_of, quantities
 
 
 @dataclass(frozen=True)
@@ -28,22 +28,22 @@ def alternatives(found: Found) -> list[Alternative]:
     for fit in tied(found.chosen, found.fits.values(), found.estimator):
         other = set(quantities(fit.explanation))
         added = other - own
-        names = tuple(sorted(each if isinstance(each, str) else each.effect for each in added))
-        for quantity in replaced(own - other, added):
+        names = tuple(sorted(map(id_of, added)))
+        for quantity in _replaced(own - other, added):
             if isinstance(quantity, str) or quantity.effect not in names:
                 listed[Alternative(quantity, names)] = None
     return list(listed)
 
 
-def replaced(lacking: set[Quantity], added: set[Quantity]) -> list[Quantity]:
+def _replaced(lacking: set[Quantity], added: set[Quantity]) -> list[Quantity]:
     """Those of the `lacking` quantities for which the `added` ones stand.
 
     One quantity is replaced by one other, an effect by two drifting parameters too. Of several, the effects are
     replaced by no more quantities than there are.
     """
-    effects = sorted((each for each in lacking if isinstance(each, Variant)), key=lambda each: each.effect)
-    if len(lacking) > 1:
-        return [*effects] if len(added) <= len(lacking) else []
-    if len(added) == 2 and not any(isinstance(each, Variant) for each in added):
-        return [*effects]
-    return [*lacking] if len(added) <= 1 else []
+    single = len(lacking) == 1
+    two_drifts = single and len(added) == 2 and not any(isinstance(each, Variant) for each in added)
+    if len(added) > len(lacking) and not two_drifts:
+        return []
+    any_kind = single and not two_drifts
+    return [each for each in sorted(lacking, key=id_of) if any_kind or isinstance(each, Variant)]

@@ -10,13 +10,13 @@ from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.estimation.data import Data
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def pool() -> Iterator[Executor]:
     with ThreadPoolExecutor(2) as threads:
         yield threads
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def short() -> Data:
     return data_on(recording({}, duration=5.0))
 

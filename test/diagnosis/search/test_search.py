@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.fits import made_up
-from support.grown import FRICTION, LAG, LAGS, NOTHING, ONES, PAIRS, STICKS, VISCOUS, Grown
+from support.grown import FRICTION, LAG, NOTHING, ONES, PAIRS, VISCOUS, Grown
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search import search as module
@@ -22,6 +22,8 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy
 from pierburg_ros.estimation.estimator import Fit, adequate
 from pierburg_ros.estimation.explanation import Explanation, Variant
+
+LAGS, STICKS = ONES[0], Explanation((), (Variant("static_friction", ("x",)),))
 
 
 @pytest.mark.search
