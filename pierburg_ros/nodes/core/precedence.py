@@ -26,11 +26,6 @@ class Precedence:
         self._dead: set[str] = set()
         self.rivals: Set[str] = frozenset()
 
-    @property
-    def is_settled(self) -> bool:
-        """Whether there has been a decision."""
-        return self._active_since is not None or bool(self.rivals)
-
     def heard(self, now: float) -> None:
         """A rival's duty came."""
         self._heard = now
