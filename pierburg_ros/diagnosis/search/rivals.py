@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from pierburg_ros.diagnosis.search.attempts import Attempts
+from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.candidates import may_change, with_drifts
 from pierburg_ros.diagnosis.search.race import NEAR, ROUNDS
 from pierburg_ros.diagnosis.search.selection import alike, gains_enough
@@ -34,12 +34,16 @@ step the other quantities would have to take over the whole effect, and events w
 def fit_rivals(attempts: Attempts, best: Fit) -> None:
     """Fit replacements for each quantity of `best`: any other quantity, and for an effect any one or two parameters.
 
-    A load that never ends is the same as a parameter that changed when it began.
+    A load that never ends is the same as a parameter that changed when it began. An earlier fit that explains most of
+    what `best` does may only have stopped too early, so it is refined like a fresh one.
     If the cost has many local minima and `best` is not adequate, other drifts start from the values of `best` as well.
     """
     for quantity in quantities(best.explanation):
         rest = without(best.explanation, quantity)
-        attempts.refine(attempts.expand(attempts.fits.get(rest) or attempts.add(rest)))
+        base = attempts.fits.get(rest) or attempts.add(rest)
+        fresh = {fit.explanation for fit in attempts.expand(base)}
+        grown = _grown_from(rest, attempts)
+        attempts.refine(fit for fit in grown if fit.explanation in fresh or far_below(fit, base))
         counts = (1, 2) if isinstance(quantity, Variant) else (1,)
         rivals = [each for count in counts for each in with_drifts(rest, attempts.drifts, count)]
         rivals += _by_a_change(rest, quantity, attempts)
@@ -48,6 +52,12 @@ def fit_rivals(attempts: Attempts, best: Fit) -> None:
         # a rival that lacks less than one more quantity has to gain may only be in a wrong local minimum
         near = (fit for fit in fits if not adequate(best) or not gains_enough(fit, best, 1))
         attempts.refine(near)
+
+
+def _grown_from(rest: Explanation, attempts: Attempts) -> list[Fit]:
+    """The fits of explanations with one quantity more than `rest`."""
+    larger = attempts.of_size(rest.size + 1)
+    return [fit for fit in larger if rest in (without(fit.explanation, each) for each in quantities(fit.explanation))]
 
 
 def _tried(attempts: Attempts, rest: Explanation, quantity: Quantity, best: Fit, rival: Explanation) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.fits import made_up
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.actuators import read_actuator
@@ -94,6 +95,19 @@ def test_a_drift_has_no_rivals_but_what_may_be_added_without_it(pool: Executor) 
     best = search.add(Explanation(("spring_preload",)))
     with_rivals(search, best, ("spring_preload", "coulomb_friction"))
     assert set(search.fits) == {Explanation(("spring_preload",)), Explanation()}
+
+
+@pytest.mark.parametrize(("without_any", "is_refined"), [(9.0, True), (1.15, False)], ids=["most", "little"])
+def test_an_earlier_rival_is_refined_if_it_explains_most_of_what_the_best_does(
+    without_any: float, is_refined: bool, pool: Executor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search, refined = Search(data_on(recording({}, duration=5.0)), NOMINAL, pool), []
+    monkeypatch.setattr(search, "refine_alone", lambda fit: refined.append(fit.explanation))
+    best, play = Explanation((), (VISCOUS,)), Explanation((), (PLAY,))
+    for explanation, ratio in ((Explanation(), without_any), (best, 1.0), (play, 1.1)):
+        search.keep(made_up(explanation, ratio, NOMINAL))
+    with_rivals(search, search.fits[best], ())
+    assert refined == [play] * is_refined
 
 
 def test_another_drift_beside_what_jumps_starts_from_the_best_values(pool: Executor) -> None:
