@@ -35,6 +35,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("gap",),
+    mark="reversals",
     typical={"gap": 0.009549297, "motor_friction_share": 0.2},
     variants=(
         Variant(("gap", "motor_friction_share"), grid(gap=(0.0095, 0.0255, 0.051), motor_friction_share=(0.1, 0.4))),

@@ -3,7 +3,19 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, Parameter, Ripple, Start, Variant
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import (
+    QUADRATURE,
+    Effect,
+    Elsewhere,
+    Missing,
+    Motion,
+    Parameter,
+    Reach,
+    Ripple,
+    Start,
+    Variant,
+)
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -16,6 +28,8 @@ at no-load speed the simulator has eight steps for each."""
 PLAUSIBLE = 12
 """Most periods per motor revolution that are plausible. Chosen: the least common multiple of the poles and slots of a
 small brush motor is rarely more; what a recording shows clearly is looked at beyond it."""
+MOST = 128
+"""Most periods in a turn of the motor that a balance looks at. Chosen: those of a large motor without gear."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
 
@@ -38,10 +52,27 @@ def _starts(missing: Missing) -> Sequence[Start]:
     ]
 
 
+def _every_order(reach: Reach) -> Sequence[Start]:
+    """Every plausible number of periods in a turn, each at two phases in quadrature."""
+    orders = range(1, MOST + 1)
+    return [
+        {"amplitude": 0.0075, "periods_per_motor_revolution": float(order), "phase": phase}
+        for order in orders
+        for phase in QUADRATURE
+    ]
+
+
 def _quarter_turn(values: Mapping[str, float]) -> float:
     """Travel [rad] over which the ripple turns once, a third of its period."""
     ripple = values["cogging_torque.periods_per_motor_revolution"] * values["gear_ratio"]
     return 2.0 / ripple if ripple > 0.0 else math.inf
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The ripple at the measured angle."""
+    amplitude, periods, phase = (values[f"cogging_torque.{name}"] for name in EFFECT.names)
+    sine, cosine = motion.ripple(periods * values.get("gear_ratio", 1.0))
+    return amplitude * (math.cos(phase) * sine + math.sin(phase) * cosine)
 
 
 EFFECT = Effect(
@@ -87,8 +118,9 @@ EFFECT = Effect(
         Parameter("phase", 0.0, "phase at angle 0", "rad", -6.3, 6.3, plausible=(-3.15, 3.15), measure="1"),
     ),
     strength=("amplitude",),
+    along=along,
     typical={"amplitude": 0.0112086, "periods_per_motor_revolution": 6.0},
-    variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts),),
+    variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts, over=_every_order),),
     ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
     turns_within=_quarter_turn,
 )

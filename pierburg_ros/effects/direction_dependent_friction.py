@@ -1,8 +1,20 @@
 """Friction that differs between opening and closing."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
+from collections.abc import Mapping
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What closing meets beyond opening."""
+    viscous, coulomb = (values[f"direction_dependent_friction.{name}"] for name in EFFECT.names)
+    return np.where(motion.velocity < 0.0, viscous * motion.velocity - coulomb, 0.0)
+
 
 EFFECT = Effect(
     id="direction_dependent_friction",
@@ -42,6 +54,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("viscous_difference", "coulomb_difference"),
+    along=along,
     typical={"viscous_difference": 0.1843969, "coulomb_difference": 0.0112086},
     variants=(
         Variant(("viscous_difference",), grid(viscous_difference=(-0.184, 0.31))),

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Literal, Protocol
 
 from pierburg_ros import parameter
+from pierburg_ros.arrays import Signal
 from pierburg_ros.effects.put_in import PutIn
 
 Stage = Literal["input", "drive", "transmission", "load", "friction", "sensor"]
@@ -78,6 +79,98 @@ class Scales(Protocol):
 
     def of_unit(self, unit: str) -> float:
         """The scale of numbers with this `unit`."""
+
+
+class Motion(Protocol):
+    """A measured motion where the shaft moves: signals of shape (samples,), all behind one filter.
+
+    `values` are all values of a model by dotted name.
+    """
+
+    @property
+    def time(self) -> Signal:
+        """[s]."""
+
+    @property
+    def angle(self) -> Signal:
+        """[rad]."""
+
+    @property
+    def velocity(self) -> Signal:
+        """[rad/s]."""
+
+    @property
+    def acceleration(self) -> Signal:
+        """[rad/s^2]."""
+
+    @property
+    def command(self) -> Signal:
+        """What drives the actuator: duty, current [A] or torque [N.m]."""
+
+    @property
+    def step(self) -> float:
+        """Time between samples of the whole motion [s]."""
+
+    @property
+    def span(self) -> float:
+        """Angle that the sensor spans [rad]."""
+
+    @property
+    def direction(self) -> Signal:
+        """The sign of the velocity."""
+
+    def commanded(self, delay: float) -> Signal:
+        """The command as it was a `delay` [s] before."""
+
+    def of_command(self, function: Callable[[Signal], Signal]) -> Signal:
+        """A function of the command, behind the filter."""
+
+    def ripple(self, wavenumber: float) -> tuple[Signal, Signal]:
+        """Sine and cosine of the angle times a `wavenumber` [1/rad], behind the filter."""
+
+    def over_time(self, function: Callable[[Motion], Signal]) -> Signal:
+        """A function of the whole motion, at the samples of this one."""
+
+    def rate(self, function: Callable[[Motion], Signal]) -> Signal:
+        """The derivative with time of a function of the whole motion, at the samples of this one."""
+
+    def driven(self, values: Mapping[str, float], command: Signal) -> Signal:
+        """The torque [N.m] at the shaft that a `command` makes of a motor at rest."""
+
+    def current(self, values: Mapping[str, float]) -> Signal:
+        """The motor's current [A]."""
+
+    def motor_torque(self, values: Mapping[str, float]) -> Signal:
+        """The motor's torque at the shaft [N.m]."""
+
+    def braking(self, values: Mapping[str, float]) -> float:
+        """What the back-EMF brakes [N.m.s/rad]."""
+
+    def load(self, values: Mapping[str, float]) -> Signal:
+        """The torque [N.m] that load, inertia and Coulomb friction need, positive closes."""
+
+    def displaced(self, values: Mapping[str, float], shift: Signal, rate: Signal) -> Signal:
+        """The load torque [N.m] that a shaft needs which is a `shift` [rad], moving by [rad/s], from the measured."""
+
+
+Mark = Literal["rests", "reversals", "stops"]
+"""Where an effect shows that is no torque along a motion, or not only."""
+
+
+class Reach(Protocol):
+    """How far recordings go, in multiples of the actuator's scales."""
+
+    @property
+    def duration(self) -> float:
+        """Of the longest recording, in the actuator's own time."""
+
+    @property
+    def low(self) -> float:
+        """The smallest angle."""
+
+    @property
+    def high(self) -> float:
+        """The largest angle."""
 
 
 class Missing(Protocol):
@@ -159,6 +252,8 @@ class Variant:
     free: tuple[str, ...]
     starts: tuple[Start, ...] | Callable[[Missing], Sequence[Start]]
     fixed: Mapping[str, float] = field(default_factory=dict)
+    over: Callable[[Reach], Sequence[Start]] | None = None
+    """Where a search starts that depends on how far recordings go, as many as a balance can screen."""
 
 
 @dataclass(frozen=True)
@@ -210,6 +305,11 @@ class Effect:
     what is counted from a base parameter is what exceeds it. Faults of the sensor stay below the 0.3 degree asked of a
     controller at standstill, which has nothing but this sensor and cannot correct them.
     """
+    along: Callable[[Motion, Mapping[str, float]], Signal] | None = None
+    """What it adds to the load torque [N.m] along a measured motion, positive closes, by all values of a model; None
+    where that does not follow from the motion."""
+    mark: Mark | None = None
+    """Where it shows beside that, or instead."""
     elsewhere: Elsewhere = Elsewhere()
     """How other simulators write it; by default they cannot."""
     variants: tuple[Variant, ...] = ()

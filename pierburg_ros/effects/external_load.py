@@ -1,9 +1,24 @@
 """A load torque from outside: constant, pulsating, or for a while."""
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import QUADRATURE, Effect, Elsewhere, Missing, Parameter, Ripple, Start, Variant
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import (
+    QUADRATURE,
+    Effect,
+    Elsewhere,
+    Missing,
+    Motion,
+    Parameter,
+    Reach,
+    Ripple,
+    Start,
+    Variant,
+)
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -27,6 +42,33 @@ def _pulsating(missing: Missing) -> Sequence[Start]:
 
 def _for_a_while(missing: Missing) -> Sequence[Start]:
     return [{"torque": load, "start": start, "end": end} for start, end, load in missing.spans(4)]
+
+
+def _every_rhythm(reach: Reach) -> Sequence[Start]:
+    """Rhythms so close that one lies within half a period over the recording of any other, at two phases each."""
+    slowest, fastest = FREQUENCIES
+    rhythms = np.arange(max(slowest, 1.0 / reach.duration), fastest, 0.5 / reach.duration)
+    return [
+        {"amplitude": 0.0075, "frequency": float(rhythm), "phase": phase} for rhythm in rhythms for phase in QUADRATURE
+    ]
+
+
+def _every_span(reach: Reach) -> Sequence[Start]:
+    """Spans between thirty evenly spaced moments, the last of them to the end of the recording."""
+    moments = np.linspace(0.0, reach.duration, 31)
+    spans = itertools.combinations(moments, 2)
+    return [
+        {"torque": 0.0075, "start": float(start), "end": float(end) if end < reach.duration else 0.0}
+        for start, end in spans
+        if end - start < 0.97 * reach.duration
+    ]
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The load at each moment."""
+    steady, amplitude, frequency, phase, start, end = (values[f"external_load.{name}"] for name in EFFECT.names)
+    acts = (motion.time >= start) & (motion.time < (end or math.inf))
+    return np.asarray(acts * (steady + amplitude * np.sin(2.0 * math.pi * frequency * motion.time + phase)))
 
 
 EFFECT = Effect(
@@ -109,10 +151,11 @@ EFFECT = Effect(
         ),
     ),
     strength=("torque", "amplitude"),
+    along=along,
     typical={"torque": 0.018681, "amplitude": 0.0112086, "frequency": 0.1909623},
     variants=(
-        Variant(("amplitude", "frequency", "phase"), _pulsating),
-        Variant(("torque", "start", "end"), _for_a_while),
+        Variant(("amplitude", "frequency", "phase"), _pulsating, over=_every_rhythm),
+        Variant(("torque", "start", "end"), _for_a_while, over=_every_span),
     ),
     ripple=Ripple("amplitude", "frequency", "phase", _pulses),
     jumps=True,

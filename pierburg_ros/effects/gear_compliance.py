@@ -1,7 +1,17 @@
 """An elastic transmission between motor and shaft."""
 
-from pierburg_ros.effects.effect import MOTORS, Effect, Parameter, Variant, grid
+from collections.abc import Mapping
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import MOTORS, Effect, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What brakes the motor more than the shaft's own velocity says: it also turns as the gear twists."""
+    twisting = motion.rate(lambda whole: whole.load(values)) / values["gear_compliance.stiffness"]
+    return motion.braking(values) * twisting
+
 
 EFFECT = Effect(
     id="gear_compliance",
@@ -35,6 +45,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("stiffness",),
+    along=along,
     typical={"stiffness": 17.60643, "damping": 0.06146564},
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.35, 7.0, 23.5), damping=(0.061,))),),
     memory="brief",

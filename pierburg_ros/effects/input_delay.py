@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
 
@@ -15,6 +16,11 @@ def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
     Supply voltage and bridge act when they act, and keep their times.
     """
     return replace(channels, command=Series(channels.command.time - values["delay"], channels.command.values))
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What the command would have driven at once, less what the late one drives."""
+    return motion.driven(values, motion.command - motion.commanded(values["input_delay.delay"]))
 
 
 EFFECT = Effect(
@@ -40,6 +46,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("delay",),
+    along=along,
     typical={"delay": 0.02094654},
     variants=(Variant(("delay",), grid(delay=(0.031, 0.105, 0.21, 0.37, 0.63, 1.26))),),
     memory="brief",

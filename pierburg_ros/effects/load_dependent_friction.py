@@ -1,7 +1,23 @@
 """Friction that grows with the torque the gear transmits."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
+from collections.abc import Mapping
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What rubs under the torque that the load needs of the motor, this friction included.
+
+    Not of the motor torque that was recorded: where nearly all of that is friction, it would explain itself.
+    """
+    coefficient, needed = values["load_dependent_friction.coefficient"], motion.load(values)
+    helps = needed * motion.direction < 0.0
+    return coefficient * motion.direction * np.abs(needed) / np.where(helps, 1.0 + coefficient, 1.0 - coefficient)
+
 
 EFFECT = Effect(
     id="load_dependent_friction",
@@ -25,6 +41,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("coefficient",),
+    along=along,
     typical={"coefficient": 0.1},
     variants=(Variant(("coefficient",), grid(coefficient=(0.03, 0.1))),),
 )

@@ -1,8 +1,20 @@
 """A return spring that gets stiffer with its travel."""
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from collections.abc import Mapping
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What the spring adds at the measured angle."""
+    cubic, stiffness, knee = (values[f"nonlinear_spring.{name}"] for name in EFFECT.names)
+    return cubic * motion.angle**3 + stiffness * np.maximum(motion.angle - knee, 0.0)
+
 
 EFFECT = Effect(
     id="nonlinear_spring",
@@ -40,6 +52,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("cubic_stiffness", "knee_stiffness"),
+    along=along,
     typical={"cubic_stiffness": 0.07240354},
     variants=(
         Variant(("cubic_stiffness",), grid(cubic_stiffness=(0.0434,))),

@@ -1,9 +1,12 @@
 """A place on the travel where it rubs more."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Missing, Parameter, Start, Variant
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Missing, Motion, Parameter, Reach, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -18,6 +21,21 @@ def _starts(missing: Missing) -> Sequence[Start]:
 
 FADED = 6.0
 """Widths from its centre at which a spot is nothing: exp(-36) is the rounding of a number."""
+
+
+def _every_spot(reach: Reach) -> Sequence[Start]:
+    """Spots of three widths, the next one closer than its width."""
+    return [
+        {"amplitude": 0.015, "center": float(center), "width": width}
+        for width in (0.03, 0.08, 0.19)
+        for center in np.arange(reach.low, reach.high, 0.7 * width)
+    ]
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The friction of the spot at the measured angle."""
+    amplitude, center, width = (values[f"position_dependent_friction.{name}"] for name in EFFECT.names)
+    return motion.direction * amplitude * np.exp(-np.square((motion.angle - center) / max(width, 1e-300)))
 
 
 EFFECT = Effect(
@@ -61,8 +79,9 @@ EFFECT = Effect(
         ),
     ),
     strength=("amplitude",),
+    along=along,
     typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
-    variants=(Variant(("amplitude", "center", "width"), _starts),),
+    variants=(Variant(("amplitude", "center", "width"), _starts, over=_every_spot),),
     jumps=True,
 )
 

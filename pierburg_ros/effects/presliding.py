@@ -42,6 +42,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("stiffness",),
+    mark="reversals",
     typical={"stiffness": 23.47524, "damping": 0.1843969},
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.9, 8.8, 29.3), damping=(0.123,))),),
     # rad: of the friction contact, at the shaft where the teeth have parted; and of the motor side then

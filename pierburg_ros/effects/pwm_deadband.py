@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.effects.put_in import CannotPutIn, Channels, Series
 from pierburg_ros.kernel import kernel
 
@@ -30,6 +31,12 @@ def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
     )
 
 
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What the lost duty would have driven."""
+    width = values["pwm_deadband.width"]
+    return motion.driven(values, motion.of_command(lambda duty: np.clip(duty, -width, width)))
+
+
 EFFECT = Effect(
     id="pwm_deadband",
     stage="input",
@@ -45,6 +52,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("width",),
+    along=along,
     typical={"width": 0.02},
     variants=(Variant(("width",), grid(width=(0.005, 0.015, 0.04))),),
     linear=True,

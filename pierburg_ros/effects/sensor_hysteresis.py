@@ -47,6 +47,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("width",),
+    mark="reversals",
     typical={"width": 0.002546479},
     variants=(Variant(("width",), grid(width=(0.0032, 0.0127))),),
     # rad: the magnet, and the shaft when the magnet last followed it

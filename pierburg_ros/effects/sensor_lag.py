@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
@@ -25,6 +26,12 @@ def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
         trail = (measured[k + 1] - measured[k]) / interval * values["time_constant"]
         lagged[k + 1] = measured[k + 1] - trail + kept * (lagged[k] - measured[k] + trail)
     return replace(channels, measured=Series(time, lagged))
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The torque between where the shaft is and where the sensor shows it."""
+    behind = values["sensor_lag.time_constant"]
+    return motion.displaced(values, behind * motion.velocity, behind * motion.acceleration)
 
 
 EFFECT = Effect(
@@ -48,6 +55,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("time_constant",),
+    along=along,
     typical={"time_constant": 0.02094654},
     variants=(Variant(("time_constant",), grid(time_constant=(0.031, 0.105, 0.26))),),
     # rad, the angle that the sensor shows

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.effects.put_in import Channels, Series
 from pierburg_ros.kernel import kernel
 
@@ -23,6 +24,15 @@ def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
     bend = values["amplitude"] * np.sin(values["half_waves"] * np.pi * fraction)
     shown = channels.measured.values + bend * channels.per_radian * channels.span
     return replace(channels, measured=Series(channels.measured.time, shown))
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The torque between where the shaft is and where the bent sensor shows it."""
+    amplitude, waves = (values[f"sensor_nonlinearity.{name}"] for name in EFFECT.names)
+    wavenumber = waves * np.pi / motion.span
+    slope = amplitude * waves * np.pi * np.cos(wavenumber * motion.angle)
+    shown = amplitude * motion.span * np.sin(wavenumber * motion.angle)
+    return motion.displaced(values, -shown, -slope * motion.velocity)
 
 
 EFFECT = Effect(
@@ -59,6 +69,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("amplitude",),
+    along=along,
     typical={"amplitude": 0.0015, "half_waves": 1.0},
     variants=(
         Variant(("amplitude",), grid(amplitude=(-0.03, 0.03)), {"half_waves": 1.0}),

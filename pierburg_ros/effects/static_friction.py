@@ -1,10 +1,22 @@
 """Static friction above the sliding friction, with a Stribeck curve between them."""
 
 import math
+from collections.abc import Mapping
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What slow sliding meets beyond Coulomb friction; the larger part shows at rests."""
+    excess = values["static_friction.breakaway_torque"] - values["coulomb_friction"]
+    share = motion.velocity / max(values["static_friction.stribeck_velocity"], 1e-300)
+    return motion.direction * excess * np.exp(-np.square(share))
+
 
 EFFECT = Effect(
     id="static_friction",
@@ -46,6 +58,8 @@ EFFECT = Effect(
     ),
     strength=("breakaway_torque",),
     # what exceeds the sliding friction, here 40 % of the Pierburg actuator's
+    along=along,
+    mark="rests",
     typical={"breakaway_torque": 0.02999422, "stribeck_velocity": 0.006078519},
     variants=(
         Variant(

@@ -40,6 +40,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("stiffness",),
+    mark="stops",
     typical={"stiffness": 17.60643, "damping": 0.06146564},
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(3.5, 11.7, 35.0), damping=(0.123,))),),
     stops=True,

@@ -1,8 +1,20 @@
 """A supply whose voltage falls under current."""
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+from collections.abc import Mapping
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The torque of the current that the source's resistance takes."""
+    added = values["supply_sag.source_resistance"] * np.square(motion.command)
+    return motion.motor_torque(values) * added / (values["armature_resistance"] + added)
+
 
 EFFECT = Effect(
     id="supply_sag",
@@ -27,6 +39,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("source_resistance",),
+    along=along,
     typical={"source_resistance": 0.1208021},
     variants=(Variant(("source_resistance",), grid(source_resistance=(0.12, 0.36, 0.72))),),
     linear=True,

@@ -1,8 +1,13 @@
 """The winding heats up and its resistance grows."""
 
 import math
+from collections.abc import Mapping
 
-from pierburg_ros.effects.effect import Effect, Elsewhere, Parameter, Variant, grid
+import numpy as np
+from scipy.signal import lfilter
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -10,6 +15,24 @@ SHORT = 1e-3
 """Below this share of its time constant four terms of the power series are the exponential to rounding."""
 COPPER = 0.0039
 """Temperature coefficient of the resistance of copper [1/K], from 20 degC (IEC 60028)."""
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """The torque of the current that the warm winding lacks."""
+    warmed = motion.over_time(lambda whole: 1.0 + COPPER * risen(whole, values))
+    return motion.motor_torque(values) * (1.0 - 1.0 / warmed)
+
+
+def risen(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """Temperature rise [K] along a whole motion, by the power that heats the winding at its own resistance then."""
+    passing, capacity = (values[f"thermal_resistance.{name}"] for name in ("thermal_resistance", "heat_capacity"))
+    cold = values["armature_resistance"]
+    share = motion.step / (passing * capacity + motion.step)
+    voltage_squared, rise = np.square(motion.current(values) * cold), np.zeros(motion.time.size)
+    for _ in range(3):  # the warmer, the less it heats: two more turns bring it to rounding of a measured motion
+        rise = lfilter([share * passing], [1.0, share - 1.0], voltage_squared / (cold * (1.0 + COPPER * rise)))
+    return np.asarray(rise)
+
 
 EFFECT = Effect(
     id="thermal_resistance",
@@ -48,6 +71,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("thermal_resistance",),
+    along=along,
     typical={"thermal_resistance": 3.434525, "heat_capacity": 60.98818},
     variants=(
         Variant(

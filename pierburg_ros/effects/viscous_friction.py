@@ -1,8 +1,17 @@
 """Viscous friction: a torque in proportion to velocity."""
 
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Parameter, Variant, grid
+from collections.abc import Mapping
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
+
+
+def along(motion: Motion, values: Mapping[str, float]) -> Signal:
+    """What resists the velocity."""
+    return values["viscous_friction.coefficient"] * motion.velocity
+
 
 EFFECT = Effect(
     id="viscous_friction",
@@ -26,6 +35,7 @@ EFFECT = Effect(
         ),
     ),
     strength=("coefficient",),
+    along=along,
     typical={"coefficient": 0.1843969},
     variants=(Variant(("coefficient",), grid(coefficient=(0.184,))),),
     linear=True,
