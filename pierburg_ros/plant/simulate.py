@@ -213,7 +213,7 @@ def simulate_stretches(
     state = blank_state()
     shown = np.full(first.size, np.nan) if lagged is None else lagged
     content = state.view(np.uint8)
-    run_stretches(model.record()[0], state[0], content, *_channels(inputs), times, first, starts, shown, output)
+    run_stretches(model.record()[0], state[0], content, *channels(inputs), times, first, starts, shown, output)
     return output
 
 
@@ -230,21 +230,22 @@ def _run_into(
 ) -> None:
     state = blank_state(lasting)
     start = float(angle), float(velocity), float(acceleration), float(came)
-    run_from(model.record()[0], state[0], *_channels(inputs), times, *start, output)
+    run_from(model.record()[0], state[0], *channels(inputs), times, *start, output)
 
 
 def _begun(model: Model, inputs: Inputs, time: float, *start: float, lasting: np.ndarray | None = None) -> np.ndarray:
     """State record, shape (1,), at `time` [s] as `new_state` has it, with the inputs from before it under way."""
     state = new_state(model.record(), *start, lasting=lasting)
-    begin(model.record()[0], state[0], *_channels(inputs), time)
+    begin(model.record()[0], state[0], *channels(inputs), time)
     return state
 
 
 def _continue_into(output: Signal, model: Model, state: np.ndarray, inputs: Inputs, times: Signal) -> None:
-    run(model.record()[0], state[0], *_channels(inputs), times, output)
+    run(model.record()[0], state[0], *channels(inputs), times, output)
 
 
-def _channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]:
+def channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]:
+    """The inputs as kernels take them: time [s], command, supply voltage [V] and enabled, empty where there is none."""
     supply = inputs.supply_voltage if inputs.supply_voltage is not None else _NOTHING
     enabled = inputs.enabled if inputs.enabled is not None else _ALWAYS
     return inputs.time, inputs.command, supply, enabled

@@ -9,7 +9,7 @@ import numpy as np
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.torques.friction import level
-from pierburg_ros.plant.torques.sensor import sensed, trail
+from pierburg_ros.plant.torques.sensor import SPEED, sensed, trail
 
 QUEUE = 1024
 """Changes of the command that may be under way at once when the input is delayed."""
@@ -136,3 +136,29 @@ def place(p, s, angle, velocity, acceleration, came):
     elif p.presliding.stiffness != 0.0 and velocity != 0.0:
         s.presliding.bristle = s.direction * level(p, s.direction, velocity, angle, 0.0)[0] / p.presliding.stiffness
     s.presliding.motor_bristle = s.presliding.bristle
+
+
+@kernel
+def displace(p, s, by):
+    """Move the shaft `by` so far [rad], and with it all that moves along, within its stops."""
+    to = s.angle + by
+    if p.stop_compliance.stiffness == 0.0:
+        to = min(max(to, p.lower_stop), p.upper_stop)
+    by = to - s.angle
+    s.angle = to
+    s.motor_angle += by
+    if p.sensor != SPEED:
+        s.sensor_hysteresis.followed += by
+        s.sensor_hysteresis.magnet += by
+        s.sensor_lag.lagged += by
+
+
+@kernel
+def turn(s, by):
+    """Let the shaft turn faster `by` so much [rad/s]."""
+    if by == 0.0:
+        return
+    s.velocity += by
+    s.motor_velocity += by
+    s.direction = np.sign(s.velocity)
+    s.motor_direction = np.sign(s.motor_velocity)
