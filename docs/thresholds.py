@@ -14,15 +14,15 @@ from itertools import zip_longest
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-ROOMS = ("estimation", "audit", "diagnosis", "identification", "fleets")
+ROOMS = ("inference", "estimation", "audit", "diagnosis", "identification", "fleets")
 GROUNDS = ("Derived", "Measured", "Work", "Given", "Chosen")
 HEAD = """\
 # Thresholds
 
 Written by `python docs/thresholds.py > docs/thresholds.md`; edit the docstrings of the constants, not this page.
 
-Every number with a name in `estimation/`, `audit/`, `diagnosis/`, `identification/` and `fleets/`, and the reason for
-its value.
+Every number with a name in `inference/`, `estimation/`, `audit/`, `diagnosis/`, `identification/` and `fleets/`, and
+the reason for its value.
 *Derived*: it follows from something else. *Measured*: from n cases. *Work*: it bounds the time spent; more time would
 find as much or more. *Given*: a convention or a printed number. *Chosen*: it was found to work, and how far it was
 tried stands with it. Unless a row says how it was varied, no other value has been measured over the blind trials.

@@ -20,8 +20,8 @@ ALLOWED = {
     "version": set(),
     "executors": {"errors", "processes", "version", "workers"},
     "intake": {"errors"},
-    "effects": {"errors", "kernel", "intake", "parameter"},
-    "actuators": {"errors", "kernel", "intake", "parameter", "effects"},
+    "effects": {"errors", "kernel", "intake", "parameter", "arrays"},
+    "actuators": {"errors", "kernel", "intake", "parameter", "effects", "arrays"},
     "plant": {"errors", "kernel", "intake", "parameter", "workers", "effects", "actuators", "arrays"},
     "control": {"errors", "kernel", "intake", "parameter"},
     "recording": {"errors", "kernel", "intake", "arrays"},
@@ -31,6 +31,7 @@ ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
 ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
+ALLOWED["inference"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}

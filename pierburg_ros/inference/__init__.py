@@ -1,0 +1,1 @@
+"""From recordings to statements: motion, balance, shortlist, fit, choice, a file a stage."""

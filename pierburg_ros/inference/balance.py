@@ -1,0 +1,77 @@
+"""The balance of torques along a measured motion: what a model lacks where the shaft moves; nothing is simulated.
+
+In motion the motor's torque must equal load, friction, inertia and what effects add. All are known functions of what
+was measured, so that a fit has one minimum and takes milliseconds, and an error at one moment stays there. Robotics
+calls it the inverse dynamic identification model (Gautier and Khalil, Exciting trajectories for the identification of
+base inertial parameters of robots, 1992).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.actuators import Actuator
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.inference.motion import Motion
+
+OUTLYING = 6.0
+"""Residual, in median absolute ones, beyond which a sample is left out: it is an event. Derived: of normal errors one
+in 20,000."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The motions of all recordings of one actuator."""
+
+    actuator: Actuator
+    motions: tuple[Motion, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of samples of all motions."""
+        return sum(motion.samples.size for motion in self.motions)
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample of the longest motion [s]."""
+        return max(float(motion.whole.time[-1]) for motion in self.motions)
+
+    def missing(self, values: Mapping[str, float], effects: Sequence[str]) -> Signal:
+        """The load torque [N.m] that a model with these `values` and `effects` lacks, positive closes; (samples,)."""
+        return np.concatenate([missing(motion, values, effects) for motion in self.motions])
+
+    def residual(self, values: Mapping[str, float], effects: Sequence[str]) -> Signal:
+        """The same as the command that is missing, which is known without any parameter; shape (samples,)."""
+        return self.missing(values, effects) / self._per_command(values)
+
+    def column(self, values: Mapping[str, float], effect: str) -> Signal:
+        """What one effect adds to that residual, shape (samples,)."""
+        along = EFFECT[effect].along
+        assert along is not None
+        return -np.concatenate([along(motion, values) for motion in self.motions]) / self._per_command(values)
+
+    def _per_command(self, values: Mapping[str, float]) -> Signal:
+        """The torque [N.m] that a command of 1 makes."""
+        return np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in self.motions])
+
+    def without_outliers(self, residual: Signal) -> Balance:
+        """The same without the samples in which a `residual` is outlying."""
+        inside = np.abs(residual) <= OUTLYING * np.median(np.abs(residual))
+        ends = np.cumsum([motion.samples.size for motion in self.motions])[:-1]
+        parts = np.split(inside, ends)
+        kept = (motion.only(part) for motion, part in zip(self.motions, parts, strict=True))
+        return Balance(self.actuator, tuple(kept))
+
+
+def missing(motion: Motion, values: Mapping[str, float], effects: Sequence[str]) -> Signal:
+    """The load torque [N.m] that a model with these `values` and `effects` lacks along one motion."""
+    lacking = motion.motor_torque(values) - motion.load(values)
+    for effect in effects:
+        along = EFFECT[effect].along
+        if along is not None:
+            lacking = np.asarray(lacking - along(motion, values))
+    return lacking

@@ -1,0 +1,297 @@
+"""Which explanation is chosen, what equals it, how sure each name is, and which model predicts best.
+
+One criterion: minus twice the log likelihood of the fitted samples, in effective samples, and `SIGNIFICANT` for each
+quantity that an explanation changes, a drifted parameter or an effect. So the fewest quantities that account for the
+recording win, and one effect before the two drifts that equal it. Which parameters have to drift beside some effects is
+read off one fit with all of them free: the cost is a parabola around it, and all subsets are compared in its numbers.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.estimation.explanation import Explanation, Quantity, id_of, without
+from pierburg_ros.inference.evidence import SIGNIFICANT, TIED, certainty, probability
+from pierburg_ros.inference.fit import Fit, Fitter, ladder, rms_of
+from pierburg_ros.inference.search import DEEPEST, adequate
+from pierburg_ros.inference.shortlist import DEPENDENT
+
+REFITTED = 3
+"""Choices of drifts of one number that are fitted beside the same effects. Work: a parabola has ranked them."""
+INSTEAD = 2
+"""Most quantities that together are an alternative to one. Chosen: what takes more to equal it is told from it."""
+
+
+@dataclass(frozen=True)
+class Name:
+    """How sure an effect is, between 0 and 1; `rival` is the best explanation without it."""
+
+    confidence: float
+    gain: float
+    rival: Fit
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The chosen explanation, and the model that is handed out.
+
+    `ties` are alternatives to each of its quantities, by effect id or parameter name. `names` holds its effects by id,
+    and `doubted` those of other explanations that gain something. `predictor` predicts best on held-out samples among
+    all fits, `described` and `estimated` (all parameters again, no effect) included.
+    """
+
+    chosen: Fit
+    predictor: Fit
+    described: Fit
+    estimated: Fit
+    fits: tuple[Fit, ...]
+    names: Mapping[str, Name]
+    doubted: Mapping[str, Name] = field(default_factory=dict)
+    ties: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
+
+    @property
+    def verdict(self) -> str:
+        """consistent, parameter_drift, missing_physics or unexplained."""
+        if not adequate(self.chosen):
+            return "unexplained"
+        if self.chosen.explanation.variants:
+            return "missing_physics"
+        return "parameter_drift" if self.chosen.size else "consistent"
+
+
+def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Choice:
+    """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
+
+    Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least.
+    """
+    weakest = tuple(fits)
+    if not any(map(adequate, fits)):
+        fits = list(pool.map(lambda fit: strongest(fit.fitter).fit(fit.explanation, fit.values), fits))
+    fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
+    described = fitter.fit(Explanation(), nominal.values, 0)
+    estimated = next(fit for fit in fits if not fit.explanation.variants)
+    smaller = [described, *fewest([described, *fits], parameters, pool)]
+    best, dropped = needed(min((*smaller, *fits), key=Score.of([*smaller, *fits])), pool)
+    everything = (*smaller, *fits, *dropped, *in_place(best, fits, parameters, pool))
+    score = Score.of([best, *everything])
+    last = weakest[0].fitter
+    handed = last.fit(best.explanation, best.values)
+    rest = (last.fit(Explanation(), nominal.values, 0), *weakest)
+    return Choice(
+        chosen=best,
+        predictor=predictor(handed, (handed, *rest)),
+        described=described,
+        estimated=estimated,
+        fits=(handed, *rest),
+        names={effect: name_of(effect, best, everything) for effect in best.explanation.effects},
+        doubted=doubted(best, everything, estimated),
+        ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
+    )
+
+
+@dataclass(frozen=True)
+class Score:
+    """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of quantities."""
+
+    effective: float
+    least: float
+
+    @staticmethod
+    def of(fits: Sequence[Fit]) -> Score:
+        """The score of some fits to the same samples."""
+        least = min(fits, key=lambda fit: fit.chi2)
+        return Score(least.fitted.size / least.repetition, least.chi2)
+
+    def lack(self, chi2: float) -> float:
+        """How much less likely the recordings are than by the best fit."""
+        return self.effective * math.log(max(chi2, 1e-300) / max(self.least, 1e-300))
+
+    def __call__(self, fit: Fit) -> float:
+        """What is least for the explanation that is chosen."""
+        return self.lack(fit.chi2) + SIGNIFICANT * fit.size
+
+    def alike(self, fit: Fit, best: Fit) -> bool:
+        """Whether a fit makes the recordings as likely as the best, but for what is a tie."""
+        return self.lack(fit.chi2) <= self.lack(best.chi2) + TIED
+
+
+def fewest(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> list[Fit]:
+    """Fits with the effects of `fits`, of which the first has no drifts, and fewer drifts, by size.
+
+    It ends where one more quantity cannot pay, even if it leaves as little as all drifts together.
+    """
+    score, found = Score.of(fits), [*fits]
+    parabolas = list(pool.map(lambda fit: Parabola.of(fit, parameters), fits[1:]))
+    for size in range(len(parameters) + DEEPEST + 1):
+        best = min(map(score, found))
+        able = [each for each in parabolas if score.lack(each.fit.chi2) + SIGNIFICANT * size < best + TIED]
+        if not able:
+            break
+        found += fitted(((each, explanation) for each in able for explanation in each.best_of_size(size)), pool)
+    return found[len(fits) :]
+
+
+def strongest(fitter: Fitter) -> Fitter:
+    """The same fitter with the first pull of the ladder."""
+    return fitter.pulled(ladder(fitter.data)[0])
+
+
+def fitted(pairs: Iterable[tuple[Parabola, Explanation]], pool: Executor) -> list[Fit]:
+    """A fit of each explanation from where a parabola is least."""
+    return list(pool.map(lambda pair: pair[0].fit.fitter.fit(pair[1], pair[0].values_of(pair[1])), pairs))
+
+
+def needed(best: Fit, pool: Executor) -> tuple[Fit, list[Fit]]:
+    """The best fit without quantities that do not pay, and the last fits without one of those that do."""
+    fitter = best.fitter
+    while True:
+        dropped = list(pool.map(lambda less: fitter.fit(*less), smaller_by_one(best)))
+        score = Score.of([best, *dropped])
+        least = min((best, *dropped), key=score)
+        if least is best:
+            return best, dropped
+        best = least
+
+
+def smaller_by_one(fit: Fit) -> list[tuple[Explanation, dict[str, float]]]:
+    """The explanation of a fit without each of its quantities, with that as described in its values."""
+    own, nominal = fit.explanation, fit.fitter.nominal.values
+    less = []
+    each: tuple[Quantity, ...] = (*own.drifted, *own.variants)
+    for quantity in each:
+        effect = None if isinstance(quantity, str) else EFFECT[quantity.effect]
+        names = [f"{effect.id}.{name}" for name in effect.names] if effect else [id_of(quantity)]
+        less.append((without(own, quantity), {**fit.values, **{name: nominal[name] for name in names}}))
+    return less
+
+
+def in_place(best: Fit, fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> list[Fit]:
+    """Fits in which two drifts stand in the place of one effect of the best."""
+    own, pairs = set(best.explanation.effects), []
+    for fit in fits:
+        if set(fit.explanation.effects) < own and len(fit.explanation.effects) == len(own) - 1:
+            parabola = Parabola.of(fit, parameters)
+            kept = set(best.explanation.drifted)
+            pairs += [(parabola, each) for each in parabola.best_of_size(best.size + 1) if kept <= set(each.drifted)]
+    return fitted(pairs, pool)
+
+
+@dataclass(frozen=True)
+class Parabola:
+    """The cost around a fit as its slopes foretell it, over the base `parameters` and the numbers of its effects."""
+
+    fit: Fit
+    parameters: tuple[str, ...]
+    normal: Signal
+    gradient: Signal
+    point: Signal
+    home: Signal
+
+    @staticmethod
+    def of(fit: Fit, parameters: Sequence[str]) -> Parabola:
+        """The parabola around `fit`, which need not have all of the parameters free."""
+        fitter = fit.fitter
+        whole = Explanation(tuple(parameters), fit.explanation.variants)
+        slopes, coordinates = fitter.slopes(fit, whole), fitter.coordinates(whole)
+        home = coordinates.point(fitter.nominal.values)[: len(parameters)]
+        gradient = slopes.T @ fit.fitted
+        return Parabola(fit, tuple(parameters), slopes.T @ slopes, gradient, coordinates.point(fit.values), home)
+
+    def best_of_size(self, size: int) -> list[Explanation]:
+        """The likeliest explanations with the same effects that change so many quantities."""
+        drifts = size - len(self.fit.explanation.variants)
+        if not 0 <= drifts <= len(self.parameters):
+            return []
+        ways = sorted(itertools.combinations(range(len(self.parameters)), drifts), key=lambda way: self.cost(way)[0])
+        return [
+            Explanation(tuple(self.parameters[place] for place in way), self.fit.explanation.variants)
+            for way in ways[:REFITTED]
+        ]
+
+    def cost(self, drifted: Sequence[int]) -> tuple[float, Signal]:
+        """The least chi2 with only these parameters drifted, and the point where it is."""
+        number = len(self.parameters)
+        held = [place for place in range(number) if place not in drifted]
+        free = [*drifted, *range(number, self.point.size)]
+        move = np.zeros(self.point.size)
+        move[held] = (self.home - self.point[:number])[held]
+        slope = self.gradient + self.normal @ move
+        cost = self.fit.chi2 + float(2.0 * self.gradient @ move + move @ self.normal @ move)
+        if free:
+            inner = self.normal[np.ix_(free, free)]
+            scale = np.sqrt(np.maximum(np.diag(inner), 1e-300))
+            step = np.linalg.pinv(inner / np.outer(scale, scale), rcond=DEPENDENT**2, hermitian=True) @ (
+                slope[free] / scale
+            )
+            cost -= float(step @ (slope[free] / scale))
+            move[free] -= step / scale
+        return max(cost, 0.0), self.point + move
+
+    def values_of(self, explanation: Explanation) -> dict[str, float]:
+        """The values by dotted name where the cost of an explanation is least; what does not drift is as described."""
+        drifted = [self.parameters.index(name) for name in explanation.drifted]
+        fitter = self.fit.fitter
+        coordinates = fitter.coordinates(Explanation(self.parameters, self.fit.explanation.variants))
+        lower, upper = coordinates.bounds
+        found = coordinates.values(np.clip(self.cost(drifted)[1], lower, upper))
+        held = {name: fitter.nominal.values[name] for name in self.parameters if name not in explanation.drifted}
+        return {**self.fit.values, **found, **held}
+
+
+def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:
+    """The fit that predicts the held-out samples best; the `best` itself where it leaves only noise, as others may."""
+    samples = best.fitter.data.validation
+    if adequate(best) or not samples.any():
+        return best
+    return min(fits, key=lambda fit: rms_of(fit, samples))
+
+
+def name_of(effect: str, best: Fit, fits: Sequence[Fit]) -> Name:
+    """How sure an effect of the `best` fit is, against the best of all fits without it."""
+    rivals = [fit for fit in fits if effect not in fit.explanation.effects]
+    rival = min(rivals, key=lambda fit: fit.chi2)
+    return Name(sureness(rival, best), rival.chi2 - best.chi2, rival)
+
+
+def sureness(worse: Fit, better: Fit) -> float:
+    """Probability, 0 to 1, that the `better` fit is better, by the spread over the blocks of all that was chosen by."""
+    data = better.fitter.data
+    samples = data.train | data.validation
+    return probability(certainty(worse.residual[samples], better.residual[samples], data.block[samples]))
+
+
+def doubted(best: Fit, fits: Sequence[Fit], estimated: Fit) -> dict[str, Name]:
+    """Effects that are not chosen and gain something over the re-estimated model, the surest first."""
+    found: dict[str, Name] = {}
+    for fit in sorted(fits, key=lambda fit: (len(fit.explanation.effects), fit.chi2)):
+        for effect in fit.explanation.effects:
+            if effect not in best.explanation.effects and effect not in found and fit.chi2 < estimated.chi2:
+                found[effect] = Name(1.0 - sureness(fit, best), estimated.chi2 - fit.chi2, best)
+    return dict(sorted(found.items(), key=lambda each: -each[1].confidence))
+
+
+def ties(best: Fit, alike: Sequence[Fit]) -> dict[str, tuple[tuple[str, ...], ...]]:
+    """For each quantity of the best fit, what may stand in its place: in those `alike` that keep the others."""
+    own, found = quantities(best.explanation), {}
+    for quantity in sorted(own):
+        kept = own - {quantity}
+        others = (quantities(fit.explanation) for fit in alike)
+        instead = {other - kept for other in others if kept <= other and quantity not in other}
+        instead = {each for each in instead if 0 < len(each) <= INSTEAD}
+        least = [each for each in instead if not any(other < each for other in instead)]
+        if least:
+            found[quantity] = tuple(sorted(tuple(sorted(each)) for each in least))
+    return found
+
+
+def quantities(explanation: Explanation) -> frozenset[str]:
+    """The ids of effects and names of parameters that an explanation changes."""
+    return frozenset((*explanation.drifted, *explanation.effects))

@@ -1,0 +1,232 @@
+"""Recordings as a fit uses them: in one unit, with the samples that count, and blocks that are held out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pierburg_ros.actuators import Actuator, Scales
+from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.effects import DECLARED, STEP
+from pierburg_ros.errors import InputError
+from pierburg_ros.inference.evidence import coarse_step, lasting_rounding
+from pierburg_ros.plant import Inputs, Model
+from pierburg_ros.plant.decode import angle_per_unit, encoded
+from pierburg_ros.recording import Recording
+from pierburg_ros.recording.noise import noise_of
+
+BLOCK = 15.7
+"""Length of the blocks that are fitted, choose and judge in turn, in the actuator's own time; less where there would be
+fewer than 16. Chosen: 1.5 s for the valve, longer than the 1.15 s in which it forgets; not varied."""
+CYCLE = 8
+"""Blocks in a cycle: the third chooses, the seventh judges, the others are fitted. Chosen: an eighth each, as far apart
+as possible; not varied."""
+GAP = 3.0
+"""Median intervals from which an interval is a gap. Given: `gaps` is defined so in diagnosis.json."""
+FIRST = 8
+"""Samples that tell where a shaft starts and how fast it moves. Chosen: more would bend, fewer say nothing; a pulled
+simulation forgets their error."""
+RESTING = 5.0
+"""Noises within which the first samples are those of a shaft at rest. Derived: eight samples of white noise span more
+in 1 of 500 recordings."""
+STOP = 3.0
+"""Noises within which a shaft starts on a stop. Derived: white noise stays within with 99.7 %."""
+FEWEST = 200
+"""Least number of samples of all recordings together. Chosen: ten for each quantity of a large explanation."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One recording, ready to be simulated, `measured` in the unit of the actuator's sensor.
+
+    `shown` is where it begins, as `plant.decode.begun` reads it. `block` is the number of the block of each sample and
+    `counts` whether it counts, both shape (samples,): not where the input is unknown. `number` counts recordings.
+    """
+
+    name: str
+    number: int
+    inputs: Inputs
+    time: Signal
+    measured: Signal
+    shown: Signal
+    block: NDArray[np.int64]
+    counts: Flags
+    quantity: str
+
+    @property
+    def in_force(self) -> Signal:
+        """The command in force at each sample, shape (samples,)."""
+        return self.inputs.at(self.time).command
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """All recordings of one actuator.
+
+    `noise` is the standard deviation of the error that no model can explain, and `step` that of the converter where it
+    is coarse beside the noise, otherwise 0, both in the measured unit. `rounding` is that of `lasting_rounding`.
+    """
+
+    actuator: Actuator
+    runs: tuple[Run, ...]
+    noise: float
+    step: float = 0.0
+    rounding: float = 0.0
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def scales(self) -> Scales:
+        """What is large for the actuator."""
+        return self.actuator.scales
+
+    @property
+    def half_step(self) -> float:
+        """Half a step of the converter in units of the noise, 0 where steps are fine."""
+        return 0.5 * self.step / self.noise
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample of the longest recording [s]."""
+        return max(float(run.time[-1]) for run in self.runs)
+
+    @property
+    def period(self) -> float:
+        """Median time between samples [s]."""
+        return float(np.median(np.concatenate([np.diff(run.time) for run in self.runs])))
+
+    @cached_property
+    def per_unit(self) -> float:
+        """Angle [rad], or velocity [rad/s], of one measured unit."""
+        return angle_per_unit(Model.nominal(self.actuator))
+
+    @cached_property
+    def block(self) -> NDArray[np.int64]:
+        """Block number of each sample of all runs, shape (samples,)."""
+        return np.concatenate([run.block for run in self.runs])
+
+    @cached_property
+    def counts(self) -> Flags:
+        """Whether each sample of all runs counts."""
+        return np.concatenate([run.counts for run in self.runs])
+
+    @cached_property
+    def train(self) -> Flags:
+        """Which samples are fitted, shape (samples,)."""
+        return np.asarray(self.counts & (self.block % (CYCLE // 2) != CYCLE // 4))
+
+    @cached_property
+    def validation(self) -> Flags:
+        """Which samples choose between explanations."""
+        return np.asarray(self.counts & (self.block % CYCLE == CYCLE // 4))
+
+    @cached_property
+    def test(self) -> Flags:
+        """Which samples neither fit nor choice uses."""
+        return np.asarray(self.counts & (self.block % CYCLE == CYCLE // 4 + CYCLE // 2))
+
+
+def data_of(recordings: Sequence[Recording], nominal: Model) -> Data:
+    """The recordings as a fit uses them; InputError where they cannot be used."""
+    refuse_unusable(recordings, nominal.actuator)
+    actuator = nominal.actuator
+    whole = sum(recording.duration for recording in recordings)
+    length = min(BLOCK * actuator.scales.time, whole / (2 * CYCLE))
+    runs, before = [], 0.0
+    for number, recording in enumerate(recordings):
+        block = np.floor((before + recording.time) / length).astype(np.int64)
+        runs.append(run_of(recording, nominal, number, block))
+        before += recording.duration
+    noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
+    measured = [run.measured for run in runs]
+    finest, _ = DECLARED[STEP].expected(nominal.scales)
+    step = coarse_step(measured, noise, finest)
+    warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
+    return Data(actuator, tuple(runs), noise, step, lasting_rounding(measured, noise), warnings)
+
+
+def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.int64]) -> Run:
+    """One recording as a run, with the block of each sample; InputError where it does not fit the actuator."""
+    actuator = nominal.actuator
+    refuse_others(recording, actuator)
+    measured = recording.measured
+    if recording.quantity == "position" and actuator.quantity == "hall_voltage":
+        measured = encoded(nominal, measured)
+    shown = start_of(recording.time, measured)
+    inputs = inputs_of(recording)
+    away = nominal.actuator.lower_stop + STOP * noise_of(recording.time, measured) * abs(angle_per_unit(nominal))
+    first = (measured[0] - float(encoded(nominal, 0.0))) * angle_per_unit(nominal)
+    if actuator.quantity != "hall_voltage" or first > away:
+        # away from its stop only a command holds a shaft: the first one was in force before
+        inputs = inputs.held_before()
+    counts = np.ones(recording.time.size, dtype=bool)
+    for start, end in recording.unknown_input:
+        counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
+    return Run(recording.name, number, inputs, recording.time, measured, shown, block, counts, actuator.quantity)
+
+
+def start_of(time: Signal, measured: Signal) -> Signal:
+    """Level, rate [1/s], curvature, margin of a stop, and way of coming at the first sample, shape (5,)."""
+    noise, first = noise_of(time, measured), measured[:FIRST]
+    if np.ptp(first) <= RESTING * noise:
+        return np.array([np.mean(first), 0.0, 0.0, STOP * noise, 0.0])
+    rate, level = np.polyfit(time[:FIRST] - time[0], first, 1)
+    return np.array([level, rate, 0.0, STOP * noise, 0.0])
+
+
+def inputs_of(recording: Recording) -> Inputs:
+    """The inputs of the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
+
+    Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
+    supply voltage the first one recorded.
+    """
+    channels = [recording.command, recording.supply_voltage, recording.enabled]
+    times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
+    command = recording.command.at(times, before=0.0)
+    if recording.input == "duty":
+        command = np.clip(command, -1.0, 1.0)
+    supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
+    enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
+    return Inputs(times, command, supply, enabled)
+
+
+def refuse_others(recording: Recording, actuator: Actuator) -> None:
+    """InputError where a recording holds another input or quantity than the actuator has."""
+    if recording.input != actuator.input:
+        raise InputError(
+            f"{recording.name} holds a {recording.input} and actuator {actuator.name} is driven by a {actuator.input};"
+            f" expected a recorded {actuator.input}. Name it with --topic {actuator.input}=..., or choose another"
+            " --actuator."
+        )
+    if "speed" in {recording.quantity, actuator.quantity} and recording.quantity != actuator.quantity:
+        raise InputError(
+            f"{recording.name} holds a {recording.quantity} and actuator {actuator.name} measures its"
+            f" {actuator.quantity}; expected a recorded {actuator.quantity}. Choose another --actuator."
+        )
+    if recording.quantity == "hall_voltage" and actuator.quantity == "position":
+        raise InputError(
+            f"{recording.name} holds a Hall voltage and actuator {actuator.name} measures its angle;"
+            " expected a recorded position. Choose another --actuator."
+        )
+
+
+def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None:
+    """InputError where the recordings together are too short to be fitted and judged."""
+    if not recordings:
+        raise InputError("There is no recording to fit; expected one or more. Name a file.")
+    samples = sum(recording.time.size for recording in recordings)
+    duration, shortest = sum(recording.duration for recording in recordings), 2 * CYCLE * actuator.scales.time
+    if samples < FEWEST or duration < shortest:
+        names = ", ".join(recording.name for recording in recordings)
+        raise InputError(
+            f"{names} is too short ({samples} samples over {duration:#.3g} s); expected at least {FEWEST} samples over"
+            f" {shortest:.2g} s. Record longer: a minute with movements in both directions tells most."
+        )
+
+
+def without(data: Data, number: int) -> Data:
+    """All recordings except `number`."""
+    return replace(data, runs=tuple(run for run in data.runs if run.number != number))

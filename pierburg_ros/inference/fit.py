@@ -1,0 +1,247 @@
+"""Fits of explanations by a simulation that is pulled to the recordings, first strongly, then ever more weakly.
+
+Whole simulations have costs with many local minima: one slip at the wrong moment displaces all that follows. Pulled
+with a time constant it costs for that long. So a fit begins where the time constant is the actuator's own time, and
+goes on with longer ones (homotopy in the parameter: Vyasarayani, Uchida, McPhee, Single-shooting homotopy method for
+parameter identification in dynamical systems, 2012).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from threading import Lock
+
+import numpy as np
+
+from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.coordinates import Coordinates, in_order
+from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
+from pierburg_ros.estimation.least_squares import FULL, Solution, jacobian, minimise
+from pierburg_ros.inference.data import Data, Run
+from pierburg_ros.inference.evidence import beyond, repetition, structure
+from pierburg_ros.plant import Model
+from pierburg_ros.plant.braking import braking
+from pierburg_ros.plant.decode import begun, decoded_value
+from pierburg_ros.plant.following import Pull, follow
+
+UNSIMULATED = 1e3
+"""Error [noise] where a model cannot be simulated. Chosen: more than any model leaves that can be."""
+WILD = 1e6
+"""Largest error [noise] that is told. Derived: its square, summed over a day at 1 kHz, is 1e20; an unstable simulation
+reaches values whose squares are no numbers."""
+SAMPLES = 8.0
+"""Least time constant in sample periods. Derived: two samples for each of the four pulls in a time constant."""
+LADDER = (1.0, 3.0, 10.0)
+"""Time constants of the pull in the actuator's own time, one after the other. Chosen: from where costs are smooth to
+what the valve remembers, 0.1 to 1 s; not varied."""
+
+
+@dataclass
+class Effort:
+    """How many simulations were made, and how many may be made: a count of work that no machine's speed changes."""
+
+    most: float = math.inf
+    simulations: int = 0
+    _lock: Lock = field(default_factory=Lock, repr=False)
+
+    def count(self) -> None:
+        """One more."""
+        with self._lock:
+            self.simulations += 1
+
+    @property
+    def over(self) -> bool:
+        """Whether all that may be made were made."""
+        return self.simulations >= self.most
+
+
+@dataclass(frozen=True)
+class Fit:
+    """An explanation with its best values by dotted name.
+
+    `residual` is measured minus simulated over all runs, shape (samples,), in units of the noise; `after` the model
+    that takes over in mid-recording, if any.
+    """
+
+    explanation: Explanation
+    values: dict[str, float]
+    model: Model
+    after: Model | None
+    residual: Signal = field(repr=False)
+    solution: Solution = field(repr=False)
+    fitter: Fitter = field(repr=False)
+
+    @property
+    def size(self) -> int:
+        """Number of quantities that it changes."""
+        return self.explanation.size
+
+    @cached_property
+    def fitted(self) -> Signal:
+        """The residual of the samples that were fitted, without what a coarse converter accounts for."""
+        data = self.fitter.data
+        return beyond(self.residual[data.train], data.half_step)
+
+    @property
+    def chi2(self) -> float:
+        """Sum of squares of the fitted residual."""
+        return float(self.fitted @ self.fitted)
+
+    @property
+    def ratio(self) -> float:
+        """Fitted error over the noise, root mean square."""
+        data = self.fitter.data
+        return math.sqrt(self.chi2 / self.fitted.size + data.half_step**2 / 3.0)
+
+    @cached_property
+    def repetition(self) -> float:
+        """Number of fitted samples that count as one."""
+        return repetition(self.fitted)
+
+    @cached_property
+    def structure(self) -> float:
+        """Evidence in the fitted residual for an error that is correlated in time, in -2 log likelihood."""
+        data = self.fitter.data
+        return structure(self.fitted, math.hypot(self.fitter.unlike, data.rounding / data.noise))
+
+    @cached_property
+    def basis(self) -> Signal:
+        """Orthonormal basis of what small changes of its values do to the fitted residual, (samples, quantities)."""
+        return np.asarray(np.linalg.qr(self.slopes)[0])
+
+    @cached_property
+    def slopes(self) -> Signal:
+        """Derivative of the fitted residual by coordinate, shape (samples, quantities)."""
+        return self.solution.jacobian
+
+
+@dataclass(frozen=True, eq=False)
+class Fitter:
+    """Fits models of `nominal` to `data` with a pull of time `constant` [s]; infinite for none."""
+
+    data: Data
+    nominal: Model
+    constant: float
+    effort: Effort = field(default_factory=Effort)
+
+    def pulled(self, constant: float) -> Fitter:
+        """The same with another time `constant` [s]."""
+        return replace(self, constant=constant)
+
+    @cached_property
+    def pulls(self) -> tuple[Pull, ...]:
+        """The pull on each run."""
+        inertial = inertia_time(self.nominal) > self.data.period and self.data.actuator.quantity != "speed"
+        return tuple(Pull.every(run.time, self.constant, inertial) for run in self.data.runs)
+
+    @cached_property
+    def unlike(self) -> float:
+        """Error [noise, root mean square] that lasts and is no evidence: what two correct simulators differ by."""
+        return FORMULATION * self.data.scales.reading / self.data.noise
+
+    def residual(self, model: Model, after: Model | None = None, when: float = math.inf) -> Signal:
+        """Measured minus simulated over all runs, in units of the noise; `after` takes over `when` [s] it is time."""
+        parts = []
+        for run, pull in zip(self.data.runs, self.pulls, strict=True):
+            self.effort.count()
+            simulated = follow(model, run.inputs, run.time, run.measured, _start(run, model), pull, self.data.per_unit)
+            if after is not None:
+                self.effort.count()
+                other = follow(after, run.inputs, run.time, run.measured, _start(run, after), pull, self.data.per_unit)
+                simulated = np.where(run.time < when, simulated, other)
+            parts.append(run.measured - simulated)
+        left = np.concatenate(parts) / self.data.noise
+        unknown = np.flatnonzero(~np.isfinite(left))
+        left[unknown] = UNSIMULATED * (1.0 - 2.0 * (unknown % 2))
+        return np.asarray(np.clip(left, -WILD, WILD))
+
+    def coordinates(self, explanation: Explanation) -> Coordinates:
+        """The coordinates in which the quantities of an explanation are searched."""
+        return Coordinates(explanation.names, self.nominal, self.data.duration)
+
+    def models(self, explanation: Explanation, values: Mapping[str, float]) -> tuple[Model, Model | None, float]:
+        """The model with some values, the one that takes over, and when [s]; InputError where none can have them."""
+        own = {**values, **explanation.fixed}
+        base = in_order({name: value for name, value in own.items() if "@" not in name}, self.nominal)
+        model, changed = self.nominal.with_values(base), explanation.changed
+        if changed is None:
+            return model, None, math.inf
+        return (
+            model,
+            model.with_values(in_order({**base, changed: own[changed + AFTER]}, self.nominal)),
+            own[changed + WHEN],
+        )
+
+    def fit(self, explanation: Explanation, values: Mapping[str, float], iterations: int = FULL) -> Fit:
+        """The best values of an explanation from some `values` on, others held there, by so many `iterations`."""
+        coordinates, samples = self.coordinates(explanation), self.data.train
+        given = {**self.nominal.values, **values}
+        size = int(np.count_nonzero(samples))
+
+        def fitted(point: Signal) -> Signal:
+            try:
+                left = self.residual(*self.models(explanation, {**given, **coordinates.values(point)}))
+            except InputError:
+                return np.full(size, UNSIMULATED)
+            return beyond(left[samples], self.data.half_step)
+
+        found = minimise(fitted, coordinates.point(given), *coordinates.bounds, coordinates.steps, iterations)
+        best = {**given, **explanation.fixed, **coordinates.values(found.point)}
+        model, after, when = self.models(explanation, best)
+        best.update(model.values)
+        return Fit(explanation, best, model, after, self.residual(model, after, when), found, self)
+
+    def slopes(self, fit: Fit, explanation: Explanation) -> Signal:
+        """Derivative of the fitted residual by the coordinates of another `explanation` at the values of `fit`."""
+        coordinates, samples = self.coordinates(explanation), self.data.train
+
+        def fitted(point: Signal) -> Signal:
+            left = self.residual(*self.models(explanation, {**fit.values, **coordinates.values(point)}))
+            return beyond(left[samples], self.data.half_step)
+
+        point = coordinates.point(fit.values)
+        return jacobian(fitted, point, fitted(point), *coordinates.bounds, coordinates.steps)
+
+
+FORMULATION = 7.3e-5
+"""Root mean square difference, as a share of the reading over the travel, between simulations of one effect that are
+all correct. Derived: 0.3 mV of the valve's Hall voltage, the largest change over all effects if steps of 5 us replace
+10 in the textbook form."""
+
+
+def ladder(data: Data) -> tuple[float, ...]:
+    """The time constants of the pull [s], one after the other: multiples of the actuator's own, of samples at least."""
+    own = max(data.scales.time, SAMPLES * data.period)
+    return tuple(rung * own for rung in LADDER)
+
+
+def inertia_time(model: Model) -> float:
+    """Time [s] in which friction that grows with speed and back-EMF stop a shaft; infinite without any."""
+    brake = braking(model)
+    return model.values.get("total_inertia", 0.0) / brake if brake > 0.0 else math.inf
+
+
+def rms_of(fit: Fit, samples: Flags) -> float:
+    """Root mean square of the residual of some samples in the measured unit; not a number where there are none."""
+    left = fit.residual[samples]
+    return float(np.sqrt(np.mean(np.square(left)))) * fit.fitter.data.noise if left.size else math.nan
+
+
+def _start(run: Run, model: Model) -> Signal:
+    """Angle [rad], velocity [rad/s], acceleration [rad/s^2] and way of coming at the first sample."""
+    if run.quantity != "speed":
+        return np.asarray(begun(model, run.shown[np.newaxis], run.quantity)[0])
+    velocity = decoded_value(model, float(run.shown[0]), run.quantity)
+    return np.array([rest_angle(model), velocity, 0.0, 0.0])
+
+
+def rest_angle(model: Model) -> float:
+    """Angle at which an actuator without input rests [rad]: on its stop, at the end of its spring, or hanging down."""
+    value, actuator = model.values, model.actuator
+    stiffness = value.get("spring_stiffness", 0.0)
+    relaxed = -value.get("spring_preload", 0.0) / stiffness if stiffness > 0.0 else 0.0
+    return min(max(relaxed, actuator.lower_stop), actuator.upper_stop)

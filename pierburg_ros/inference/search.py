@@ -1,0 +1,164 @@
+"""Which explanations are fitted: up to three effects, grown from the likeliest, each with all drifts free."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from pierburg_ros.effects import DECLARED, EFFECT
+from pierburg_ros.estimation.explanation import Explanation, Variant, without
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, gain
+from pierburg_ros.inference.fit import Fit, Fitter, ladder
+from pierburg_ros.inference.shortlist import Promise, Span, balanced, forms, promises
+from pierburg_ros.plant import Model
+
+Progress = Callable[[str], None]
+
+TRIED = 8
+"""Effects whose promises are fitted on top of an explanation, half as many on top of one with effects. Work: each
+costs two short fits; not varied."""
+STARTS = 2
+"""Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
+BRIEF = 8
+"""Iterations of a fit that is one of several to choose from. Work: what leads is fitted on."""
+ALIAS = 0.05
+"""Share of what an effect changes that drifts cannot make, below which it may stand for drifts. Chosen: a sag of the
+supply is absorbed to 78 to 99 % by the resistance; not varied."""
+BEAM = 3
+"""Explanations of each size that are grown and fitted on. Work: as for `TRIED`."""
+DEEPEST = 3
+"""Most effects in an explanation. Given: supports of up to three effects."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """What a search works with; `drifts` are the base parameters that are free in every fit."""
+
+    balance: Balance
+    drifts: tuple[str, ...]
+    span: Span
+    pool: Executor
+    tell: Progress
+
+
+def searched(fitter: Fitter, search: Search) -> list[Fit]:
+    """The explanations that lead, fitted with the weakest pull of the ladder, best first.
+
+    From the best of each size the next size is grown, until one leaves only noise or one more effect gains nothing.
+    What is no longer needed beside what came later is dropped again.
+    """
+    search.tell("re-estimated parameters")
+    base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
+    candidates, leading = forms(fitter.data, fitter.nominal, search.span), [base]
+    found, ended = {key(base)}, followed([base], search.pool)
+    for depth in range(1, DEEPEST + 1):
+        if any(map(adequate, ended)) or fitter.effort.over:
+            break
+        grown: list[Fit] = []
+        for fit in leading:
+            search.tell(f"what could be added to {label(fit)}")
+            promised = promises(fit, search.balance, candidates, search.pool)
+            grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
+        new = [fit for fit in best_of_support(grown) if key(fit) not in found]
+        if not new:
+            break
+        found.update(map(key, new))
+        search.tell(f"{label(new[0])}, to the end")
+        led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
+        before, leading = leading[0], sorted(led, key=lambda fit: fit.chi2)
+        ended = best_of_support([*ended, *followed(led, search.pool)])
+        ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
+        if gain(before.fitted, leading[0].fitted) < SIGNIFICANT:
+            break
+    return ended
+
+
+def without_one(fit: Fit, pool: Executor) -> list[Fit]:
+    """A fit of several effects without each of them in turn: what it was grown from may have been a local minimum."""
+    if len(fit.explanation.variants) < 2:
+        return []
+    first = fit.fitter.pulled(ladder(fit.fitter.data)[0])
+
+    def one(variant: Variant) -> Fit:
+        absent = {f"{variant.effect}.{name}": 0.0 for name in EFFECT[variant.effect].names}
+        return first.fit(without(fit.explanation, variant), {**fit.values, **absent})
+
+    return list(pool.map(one, fit.explanation.variants))
+
+
+def aliases(fit: Fit, search: Search) -> list[Fit]:
+    """A fit with each effect added that changes of the drifts can make as well: it may need fewer of these."""
+    search.tell(f"what equals the drifts beside {label(fit)}")
+    candidates = forms(fit.fitter.data, fit.fitter.nominal, search.span)
+    few = [(variant, starts[:1]) for variant, starts in candidates if EFFECT[variant.effect].ripple is None]
+    promised = [each for each in promises(fit, search.balance, few, search.pool) if each.own < ALIAS]
+    return best_of_support(fits_of(fit, promised, search))
+
+
+def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
+    """Where fits begin: the description, or the values of the balance where these leave less."""
+    values, _ = balanced(search.balance, fitter.nominal, search.drifts, {})
+    both = [fitter.fit(Explanation(search.drifts), start, 0) for start in (fitter.nominal.values, values)]
+    return min(both, key=lambda fit: fit.chi2).values
+
+
+def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
+    """Short fits from each of the promises on top of a fit."""
+
+    def one(promise: Promise) -> Fit:
+        explanation = fit.explanation.plus(promise.variant)
+        starts = promise.values, promise.balanced
+        nearest = min((fit.fitter.fit(explanation, start, 0) for start in starts), key=lambda each: each.chi2)
+        return fit.fitter.fit(explanation, nearest.values, BRIEF)
+
+    return list(search.pool.map(one, promised))
+
+
+def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
+    """The same explanations fitted on, pulled ever more weakly, best first."""
+
+    def one(fit: Fit) -> Fit:
+        for constant in ladder(fit.fitter.data)[1:]:
+            fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
+        return fit
+
+    return sorted(pool.map(one, fits), key=lambda fit: fit.chi2)
+
+
+def adequate(fit: Fit) -> bool:
+    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time."""
+    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
+
+
+def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
+    """The best promises of each of so many `effects`, these in the order of their best."""
+    groups: dict[str, list[Promise]] = {}
+    for promise in promised:
+        groups.setdefault(promise.variant.effect, []).append(promise)
+    return [promise for group in list(groups.values())[:effects] for promise in group[:STARTS]]
+
+
+def best_of_support(fits: Iterable[Fit]) -> list[Fit]:
+    """The best fit of each set of effects, best first."""
+    best: dict[frozenset[str], Fit] = {}
+    for fit in sorted(fits, key=lambda fit: fit.chi2):
+        best.setdefault(key(fit), fit)
+    return list(best.values())
+
+
+def key(fit: Fit) -> frozenset[str]:
+    """The effects of a fit."""
+    return frozenset(fit.explanation.effects)
+
+
+def label(fit: Fit) -> str:
+    """The effects of a fit in words."""
+    return " and ".join(fit.explanation.effects).replace("_", " ") or "the re-estimated model"
+
+
+def free_parameters(nominal: Model) -> tuple[str, ...]:
+    """Base parameters that a fit may change, and the numbers of effects that the actuator always has."""
+    always = (f"{effect}.{name}" for effect in nominal.actuator.effects for name in EFFECT[effect].names)
+    return (*nominal.actuator.free, *(name for name in always if nominal.values[name] != 0.0 and name in DECLARED))

@@ -1,0 +1,303 @@
+"""Which effects, added to an explanation, promise most: read off the balance, then off one simulation each.
+
+The balance screens hundreds of starts of an effect that acts along the motion. A simulation of the best, and of every
+start of an effect that shows at rests, reversals and stops, is then compared with the residual of a pulled fit: by how
+much does a share of it lower the cost, beside changes of all values that are free already? Its job is never to lose
+the truth; fits decide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT, EFFECTS
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.coordinates import Coordinates, in_order
+from pierburg_ros.estimation.explanation import Variant
+from pierburg_ros.estimation.least_squares import jacobian, minimise
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.data import Data
+from pierburg_ros.inference.fit import Fit
+from pierburg_ros.plant import Model
+
+SCREENED = 4
+"""Starts of one effect that the balance hands on. Work: each costs two simulations; not varied."""
+SETTLING = 8
+"""Iterations of such a fit. Work: the simulation fits on."""
+ROUNDS = 3
+"""Fits of the balance, each without what was outlying in the one before. Work: each takes milliseconds; not varied."""
+
+
+@dataclass(frozen=True)
+class Promise:
+    """A start of an added effect: all values by dotted name, and the fall of chi2 that a linear step foretells.
+
+    `own` is the share, 0 to 1, of what the effect changes that no change of the values which are free already makes.
+    `balanced` are all values by the balance with the effect acting; `fall` is what they make of chi2, if that is more.
+    """
+
+    variant: Variant
+    values: dict[str, float]
+    fall: float
+    own: float
+    balanced: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Span:
+    """How far recordings go (`effects.effect.Reach`), in multiples of the actuator's scales."""
+
+    duration: float
+    low: float
+    high: float
+
+
+def balanced(
+    balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str] = ()
+) -> tuple[dict[str, float], Balance]:
+    """Values of the base parameters `names` by the balance beside `effects`, and the balance without outliers."""
+    coordinates, found = Coordinates(tuple(names), nominal, math.inf), {**nominal.values, **values}
+    for _ in range(ROUNDS):
+        start = found
+
+        def residual(point: Signal, at: Mapping[str, float] = start, inside: Balance = balance) -> Signal:
+            return inside.residual(in_order({**at, **coordinates.values(point)}, nominal), effects)
+
+        solution = minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps)
+        found = in_order({**start, **coordinates.values(solution.point)}, nominal)
+        balance = balance.without_outliers(balance.residual(found, effects))
+    return found, balance
+
+
+def independent(balance: Balance, nominal: Model, names: Sequence[str]) -> tuple[str, ...]:
+    """Those of the base parameters `names` that the balance tells from the ones before them.
+
+    Of quantities of which only a ratio shows the last is held: what scales with the others stays as described.
+    """
+    coordinates = Coordinates(tuple(names), nominal, math.inf)
+    point = coordinates.point(nominal.values)
+
+    def residual(at: Signal) -> Signal:
+        return balance.residual({**nominal.values, **coordinates.values(at)}, ())
+
+    slopes = jacobian(residual, point, residual(point), *coordinates.bounds, coordinates.steps)
+    kept: list[int] = []
+    for place in range(len(names)):
+        column = slopes[:, place]
+        if kept:
+            basis = np.linalg.qr(slopes[:, kept])[0]
+            column = column - basis @ (basis.T @ column)
+        if np.linalg.norm(column) > DEPENDENT * np.linalg.norm(slopes[:, place]):
+            kept.append(place)
+    return tuple(names[place] for place in kept)
+
+
+DEPENDENT = 1e-3
+"""Share of a slope that is left beside others below which they hold it. Derived: differences of a thousandth of a
+parameter leave half of that of a slope that is a combination of others."""
+
+
+def forms(data: Data, nominal: Model, span: Span) -> list[tuple[Variant, list[dict[str, float]]]]:
+    """Every way in which an effect may act in this actuator, with the values that a search starts from, in units."""
+    actuator, found = data.actuator, []
+    for effect in EFFECTS:
+        if actuator.obstacle(effect) or effect.id in actuator.effects:
+            continue
+        for each in effect.variants:
+            starts = each.over(span) if each.over else each.starts
+            assert not callable(starts)
+            variant = Variant(effect.id, each.free, tuple(each.fixed.items()))
+            found.append((variant, [{**effect.in_units(start, nominal.scales), **each.fixed} for start in starts]))
+    return found
+
+
+def promises(
+    fit: Fit,
+    balance: Balance,
+    candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
+    pool: Executor,
+) -> list[Promise]:
+    """What each of the `candidates` promises on top of a `fit`, the most first."""
+    nominal = fit.fitter.nominal
+    base = [name for name in fit.explanation.drifted if "." not in name]
+    acting = fit.explanation.effects
+    values, inside = balanced(balance, nominal, base, fit.values, acting)
+    project, left = _projection(inside, nominal, base, values, acting)
+    groups: list[tuple[Variant, list[Start], dict[str, float]]] = []
+    for variant, starts in candidates:
+        if variant.effect in acting:
+            continue
+        several, declared = _in_quadrature(variant.effect, starts), EFFECT[variant.effect]
+        if declared.along is not None and declared.mark is None:
+            screened = [_screened(inside, values, variant, group, project, left) for group in several]
+            several = [group for _, group in sorted(screened, key=lambda each: -each[0])[:SCREENED]]
+            several = [_dated(inside, values, variant, group, project, left) for group in several]
+        groups += [(variant, *_settled(inside, nominal, base, acting, values, variant, group)) for group in several]
+    found = pool.map(lambda group: _promise(fit, *group), groups)
+    return sorted((each for each in found if each is not None), key=lambda each: -each.fall)
+
+
+def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
+    """`values` of a model with an effect that starts at `start`."""
+    effect = EFFECT[variant.effect]
+    own = {f"{effect.id}.{name}": start.get(name, 0.0) for name in effect.names}
+    return {**values, **effect.counted(own, values)}
+
+
+def _projection(
+    balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], acting: Sequence[str]
+) -> tuple[Signal, Signal]:
+    """Orthonormal basis of what base parameters change in the balance, and the residual beside it."""
+    coordinates = Coordinates(tuple(names), nominal, math.inf)
+    point = coordinates.point(values)
+
+    def residual(at: Signal) -> Signal:
+        return balance.residual(in_order({**values, **coordinates.values(at)}, nominal), acting)
+
+    left = residual(point)
+    basis = np.linalg.qr(jacobian(residual, point, left, *coordinates.bounds, coordinates.steps))[0]
+    return basis, left - basis @ (basis.T @ left)
+
+
+def _screened(
+    balance: Balance,
+    values: Mapping[str, float],
+    variant: Variant,
+    group: Sequence[Start],
+    basis: Signal,
+    left: Signal,
+) -> tuple[float, list[Start]]:
+    """The share of the balance's error that starts take which differ in phase alone, and they with their strength."""
+    columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
+    columns = columns - basis @ (basis.T @ columns)
+    scale, fall = _step(columns, left)
+    return fall, _scaled(variant.effect, group, scale)
+
+
+def _dated(
+    balance: Balance,
+    values: Mapping[str, float],
+    variant: Variant,
+    group: list[Start],
+    basis: Signal,
+    left: Signal,
+) -> list[Start]:
+    """A start with its moments, if it has any, moved to where it takes most: a balance has no slope over them."""
+    moments = [p.name for p in EFFECT[variant.effect].parameters if p.moment and p.name in variant.free]
+    step = balance.duration / DATES
+    best = _screened(balance, values, variant, group, basis, left)
+    while moments and step > 2.0 * balance.motions[0].step:
+        step *= 0.5
+        for name in moments:
+            for by in (-step, step):
+                moved = [{**start, name: start[name] + by if start[name] else 0.0} for start in best[1]]
+                best = max(best, _screened(balance, values, variant, moved, basis, left), key=lambda each: each[0])
+    return best[1]
+
+
+DATES = 30
+"""Parts of a recording between which the moments of starts lie. Given: the starts that effects declare have as many."""
+
+
+def _settled(
+    balance: Balance,
+    nominal: Model,
+    names: Sequence[str],
+    acting: Sequence[str],
+    values: Mapping[str, float],
+    variant: Variant,
+    group: Sequence[Start],
+) -> tuple[list[Start], dict[str, float]]:
+    """Starts after a fit of the balance beside the effect, and all values of that fit.
+
+    What shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them.
+    """
+    effect = EFFECT[variant.effect]
+    own = () if effect.mark else tuple(f"{variant.effect}.{name}" for name in variant.free)
+    start = in_order(added(values, variant, group[0]), nominal)
+    if not own and effect.along is None:
+        return list(group), start
+    coordinates = Coordinates((*names, *own), nominal, balance.duration)
+
+    def residual(point: Signal) -> Signal:
+        return balance.residual(in_order({**start, **coordinates.values(point)}, nominal), (*acting, variant.effect))
+
+    found = minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps, SETTLING)
+    settled = in_order({**start, **coordinates.values(found.point)}, nominal)
+    if not own:
+        return list(group), settled
+    numbers = {
+        p.name: settled[f"{effect.id}.{p.name}"] - (settled[p.above] if p.above else 0.0) for p in effect.parameters
+    }
+    if len(group) < 2 or effect.ripple is None:
+        return [numbers], settled
+    return [numbers, {**numbers, effect.ripple.phase: numbers[effect.ripple.phase] + math.pi / 2}], settled
+
+
+def _promise(fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float]) -> Promise | None:
+    """What one linear step along some starts foretells; None where the effect cannot be added to the fit."""
+    fitter, before, columns = fit.fitter, fit.fitted, []
+    samples = fitter.data.train
+    for start in group:
+        try:
+            models = fitter.models(fit.explanation, in_order(added(fit.values, variant, start), fitter.nominal))
+        except InputError:
+            return None
+        columns.append(fitter.residual(*models)[samples] - before)
+    whole = np.stack(columns, axis=1)
+    changed = whole - fit.basis @ (fit.basis.T @ whole)
+    own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
+    scale, fall = _step(changed, before - fit.basis @ (fit.basis.T @ before))
+    start = _scaled(variant.effect, group, scale)[0]
+    try:
+        at_once = fitter.residual(*fitter.models(fit.explanation, settled))[samples]
+        fall = max(fall, fit.chi2 - float(at_once @ at_once))
+    except InputError:
+        settled = fit.values
+    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), fall, own, settled)
+
+
+def _step(columns: Signal, left: Signal) -> tuple[Signal, float]:
+    """By how much to scale columns for the least squared error beside what is `left`, and the fall of it."""
+    normal, slope = columns.T @ columns, columns.T @ left
+    if np.linalg.cond(normal) > SINGULAR:
+        return np.zeros(slope.size), 0.0
+    scale = -np.linalg.solve(normal, slope)
+    return scale, float(-slope @ scale)
+
+
+SINGULAR = 1e12
+"""Condition of normal equations beyond which columns tell nothing. Derived: rounding is then a hundredth of them."""
+
+
+def _in_quadrature(effect: str, starts: Sequence[Start]) -> list[list[Start]]:
+    """Starts in groups that differ only in the phase of a ripple: a linear step finds any phase between them."""
+    ripple = EFFECT[effect].ripple
+    groups: dict[tuple[tuple[str, float], ...], list[Start]] = {}
+    for start in starts:
+        key = tuple(sorted((name, value) for name, value in start.items() if not ripple or name != ripple.phase))
+        groups.setdefault(key, []).append(start)
+    return list(groups.values())
+
+
+def _scaled(effect: str, group: Sequence[Start], scale: Signal) -> list[Start]:
+    """The starts with the strength, and the phase, that a linear step gives them."""
+    declared, values = EFFECT[effect], dict(group[0])
+    ripple = declared.ripple
+    if len(group) == 2 and ripple is not None:
+        values[ripple.amplitude] *= float(np.hypot(*scale))
+        turned = values[ripple.phase] + float(np.arctan2(scale[1], scale[0]))
+        values[ripple.phase] = math.remainder(turned, 2.0 * math.pi)
+        return [values, {**values, ripple.phase: values[ripple.phase] + math.pi / 2}]
+    for name in values:
+        stride = declared.parameter(name).stride
+        if stride is not None:
+            values[name] *= float(np.clip(scale[0], 1.0 / stride, stride))
+    return [values]

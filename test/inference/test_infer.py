@@ -1,0 +1,75 @@
+"""Recordings in, a choice out."""
+
+import numpy as np
+import pytest
+from support.recordings import NOMINAL, recording, recording_in_closed_loop
+
+from pierburg_ros.inference.choice import Choice
+from pierburg_ros.inference.fit import rms_of
+from pierburg_ros.inference.infer import infer
+
+pytestmark = pytest.mark.search
+
+
+def named(choice: Choice) -> set[str]:
+    return set(choice.chosen.explanation.effects)
+
+
+def test_the_model_as_described_is_consistent():
+    choice = infer([recording({})], NOMINAL)
+    assert choice.verdict == "consistent"
+    assert choice.chosen.size == 0
+
+
+def test_a_drift_is_a_drift():
+    choice = infer([recording({"armature_resistance": 5.2})], NOMINAL)
+    assert choice.verdict == "parameter_drift"
+    assert choice.chosen.explanation.drifted == ("armature_resistance",)
+    assert choice.chosen.values["armature_resistance"] == pytest.approx(5.2, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        {"load_dependent_friction.coefficient": 0.12},
+        {"input_delay.delay": 0.012},
+        {"sensor_hysteresis.width": 0.015},
+        {"external_load.torque": 0.04, "external_load.start": 7.3, "external_load.end": 15.1},
+    ],
+    ids=lambda hidden: next(iter(hidden)).split(".")[0],
+)
+def test_an_effect_beside_a_drift_in_closed_loop_is_named(hidden):
+    choice = infer([recording_in_closed_loop({**hidden, "spring_preload": 0.31})], NOMINAL)
+    assert choice.verdict == "missing_physics"
+    assert named(choice) == {next(iter(hidden)).split(".")[0]}
+    assert {name: choice.chosen.values[name] for name in hidden} == pytest.approx(hidden, rel=0.15)
+    assert choice.chosen.values["spring_preload"] == pytest.approx(0.31, rel=0.02)
+
+
+def test_two_effects_are_named():
+    hidden = {"cogging_torque.amplitude": 0.02, "cogging_torque.periods_per_motor_revolution": 3.0}
+    hidden |= {"sensor_lag.time_constant": 0.015}
+    choice = infer([recording(hidden)], NOMINAL)
+    assert named(choice) == {"cogging_torque", "sensor_lag"}
+
+
+def test_an_effect_that_equals_two_drifts_is_named_with_the_tie():
+    choice = infer([recording({"viscous_friction.coefficient": 0.03})], NOMINAL)
+    assert named(choice) == {"viscous_friction"}
+    assert ("armature_resistance", "torque_constant") in choice.ties["viscous_friction"]
+
+
+def test_the_model_handed_out_predicts_best_of_all_that_were_fitted():
+    choice = infer([recording({"load_dependent_friction.coefficient": 0.12})], NOMINAL)
+    held_out = choice.predictor.fitter.data.validation
+    least = min(rms_of(fit, held_out) for fit in choice.fits)
+    assert rms_of(choice.predictor, held_out) <= 1.01 * least
+
+
+def test_the_number_of_jobs_changes_nothing():
+    hidden = recording({"pwm_deadband.width": 0.02})
+    one, two = (infer([hidden], NOMINAL, jobs=jobs) for jobs in (1, 2))
+    assert one.chosen.values == two.chosen.values
+    assert [fit.chi2 for fit in one.fits] == [fit.chi2 for fit in two.fits]
+    assert one.chosen.fitter.effort.simulations == two.chosen.fitter.effort.simulations
+    assert np.array_equal(one.predictor.residual, two.predictor.residual)
