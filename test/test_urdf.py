@@ -32,6 +32,21 @@ def test_the_joint_is_the_one_in_joint_states():
     assert JOINT.attrib["type"] == "revolute"
 
 
+def test_ros2_control_commands_the_joint_within_its_range_and_by_the_topics_of_the_nodes():
+    control = ROBOT.find("ros2_control")
+    topics = {each.attrib["name"]: each.text for each in control.iterfind("hardware/param")}
+    assert (topics["joint_commands_topic"], topics["joint_states_topic"]) == ("joint_commands", "joint_states")
+    (joint,) = control.findall("joint")
+    assert joint.attrib == {"name": JOINT.attrib["name"]}
+    limits = {
+        each.attrib["name"]: tuple(float(limit.text) for limit in each) for each in joint.findall("command_interface")
+    }
+    stops = tuple(float(JOINT.find("limit").attrib[name]) for name in ("lower", "upper"))
+    assert limits == {"position": stops, "effort": (-1.0, 1.0)}
+    states = {each.attrib["name"] for each in joint.findall("state_interface")}
+    assert states == {"position", "velocity", *limits}
+
+
 def test_its_limits_are_the_actuators():
     actuator, limit = read_actuator("pierburg"), JOINT.find("limit").attrib
     motor = value("gear_ratio") * value("torque_constant")

@@ -68,6 +68,7 @@ class GuardedController:
         self.winding.time_constant = values["thermal_time_constant"]
         self.fallback = Fallback(values["on_fault"], values["hold_time"], values["close_duty"])
         self.loop.longest_step = values["longest_step"]
+        self.loop.command_timeout = values["command_timeout"]
         self._timeout = round(values["angle_timeout"] * 1e9)
         self._retry = values["frozen_retry"]
 
