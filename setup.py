@@ -73,8 +73,6 @@ setup(
     version=MANIFEST.findtext("version"),
     description="Simulate, control and diagnose the Pierburg mechatronic actuator over ROS 2.",
     license="Apache-2.0",
-    maintainer="pierburg_ros developers",
-    maintainer_email="maintainers@pierburg-ros.example.org",
     python_requires=">=3.10,<3.14",
     packages=find_packages(exclude=["test", "test.*"]),
     package_data={

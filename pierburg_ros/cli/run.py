@@ -49,7 +49,7 @@ def recorded_into(node: str, output: Path | None) -> list[str]:
 
 
 def require_ros() -> None:
-    """InputError where the ROS client library is not installed."""
+    """Raise InputError where the ROS client library is not installed."""
     if find_spec("rclpy") is None:
         raise InputError(
             "ROS 2 was not found (no module rclpy). Install its wheels with pip install 'pierburg_ros[ros]', "
