@@ -17,8 +17,8 @@ from packaging.version import Version
 from support.launch_file import launched
 
 from pierburg_ros.control import SETTINGS, Settings
-from pierburg_ros.control.parameter_file import read_parameter_file
-from pierburg_ros.nodes.core.controller_parameters import CONTROLLER
+from pierburg_ros.control.parameter_file import NODE_PARAMETERS, read_parameter_file
+from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, PROTECTION, WINDING
 from pierburg_ros.nodes.core.monitor_parameters import MONITOR
 from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
@@ -298,6 +298,7 @@ def test_the_plants_file_names_parameters_that_exist_in_their_range():
 
 def test_the_controllers_file_holds_the_settings_in_the_package():
     assert read_parameter_file(ROOT / "config" / "controller.yaml") == Settings()
+    assert {each.name for each in (*CONTROLLER, *PROTECTION, *WINDING)} <= NODE_PARAMETERS
     assert {setting.name for setting in SETTINGS} <= set(parameters("controller.yaml"))
 
 

@@ -66,6 +66,11 @@ class PlantNode(LiveNode):
         """Whether this node makes the time of the graph."""
         return bool(self.values["simulated_time"] or self.values["lockstep"])
 
+    @property
+    def is_simulated(self) -> bool:
+        """Whether time is simulated, by this node or by another."""
+        return self.is_time_source or super().is_simulated
+
     def accept(self, changes: Mapping[str, Any]) -> None:
         """Put parameters in force between two ticks."""
         if self.plant is None:

@@ -43,14 +43,14 @@ class RecorderNode(LiveNode):
         self.topics: RecordedTopics | None = None
         self.declare(RECORDER)
         self._order: SourceOrder[Received] = SourceOrder(HORIZON)
-        is_simulated = bool(self.get_parameter("use_sim_time").value)
         self._values_topic = Topic(f"{self.get_fully_qualified_name()}/parameters", type_name(String))
         self._parameter_values = ParameterValues(self, self.values["parameters_of"], self._take_values)
         series = RecordingSeries(self.values["output"], self.values["form"] == "rosbag2", datetime.now())
         self.writer = RecordingWriter(series)
         self._begin()
-        self.topics = RecordedTopics(self, dict.fromkeys([*self.values["topics"], *([CLOCK] if is_simulated else [])]))
-        self._time = RecordedTime(self, is_simulated)
+        clock = [CLOCK] if self.is_simulated else []
+        self.topics = RecordedTopics(self, dict.fromkeys([*self.values["topics"], *clock]))
+        self._time = RecordedTime(self, self.is_simulated)
         self._receiver = Receiver(self.topics)
         self.create_service(SetBool, "~/record", self._on_record)
         self.create_service(Trigger, "~/split", self._on_split)

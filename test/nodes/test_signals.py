@@ -1,5 +1,7 @@
 """Signals are read from whoever sends them, and their quality of service can be overridden."""
 
+import sys
+
 import pytest
 
 pytest.importorskip("rclpy")
@@ -52,3 +54,29 @@ def test_overrides_hold_and_one_for_a_topic_that_does_not_exist_is_named(graph):
     _, output = graph.ended(process)
     assert "recorder has no topic /nowhere for qos_overrides" in output
     assert "no topic /recorder/set_parameter" not in output
+
+
+DEPTHS = """
+import sys
+import rclpy
+from pierburg_ros.nodes.plant import PlantNode
+rclpy.init(args=sys.argv)
+node = PlantNode()
+print({each.topic_name: each.qos_profile.depth for each in node.publishers if each.topic_name == "/hall_voltage"})
+"""
+
+
+@pytest.mark.parametrize(
+    ("parameters", "depth"),
+    [
+        ((), 5),
+        (("depth:=70",), 70),
+        (("depth:=70", "qos_overrides./hall_voltage.publisher.depth:=8"), 8),
+        (("simulated_time:=true",), 10_000),
+        (("use_sim_time:=true",), 10_000),
+    ],
+)
+def test_publishers_keep_as_much_as_of_any_sensor_unless_told_otherwise_or_time_is_simulated(graph, parameters, depth):
+    given = [word for parameter in parameters for word in ("-p", parameter)]
+    status, output = graph.ended(graph.run([sys.executable, "-c", DEPTHS, "--ros-args", *given]), by=None)
+    assert status == 0 and f"{{'/hall_voltage': {depth}}}" in output, output

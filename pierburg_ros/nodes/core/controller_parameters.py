@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pierburg_ros.control import SETTINGS
+from pierburg_ros.nodes.core.depth import DEPTH
 from pierburg_ros.nodes.core.joint_command import ARRAYS
 from pierburg_ros.nodes.core.protection.fallback import CHOICES
 from pierburg_ros.parameter import Parameter as Declaration
 
 CONTROLLER = (
+    DEPTH,
     Declaration(
         "actuator",
         "pierburg",

@@ -1,8 +1,10 @@
 """Parameters of the plant node beside those of the physics."""
 
+from pierburg_ros.nodes.core.depth import DEPTH
 from pierburg_ros.parameter import Parameter as Declaration
 
 PLANT = (
+    DEPTH,
     Declaration("actuator", "pierburg", "name of an actuator, or path of its description", fixed=True),
     Declaration("model", "", "path of a model file; its actuator and values replace the nominal ones", fixed=True),
     Declaration(

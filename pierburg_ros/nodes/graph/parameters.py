@@ -18,12 +18,14 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError, near
+from pierburg_ros.nodes.core.depth import DEPTH, KEPT
 from pierburg_ros.nodes.core.parameter_files import unread_files
 from pierburg_ros.nodes.graph.diagnostics import Diagnostics
-from pierburg_ros.nodes.graph.qos import COMMANDS, overridable
+from pierburg_ros.nodes.graph.qos import COMMANDS, PUBLISHED, overridable
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.parameter import Value
 
@@ -44,9 +46,22 @@ class LiveNode(Node):
         self.diagnostics = Diagnostics(self, self.counters)
         self._given = self._overrides()
 
+    @property
+    def is_simulated(self) -> bool:
+        """Whether time is simulated: then the plant waits for the recorder, and nothing may be overwritten before."""
+        return bool(self.get_parameter("use_sim_time").value)
+
+    @property
+    def kept(self) -> int:
+        """Messages that publishers of signals keep."""
+        return KEPT if self.is_simulated else int(self.values.get(DEPTH.name, KEPT))
+
     def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
         """A publisher whose quality of service `qos_overrides` may change, if it is one of the project's topics."""
-        return super().create_publisher(kind, topic, profile, **overridable(profile, options))
+        options = overridable(profile, options)
+        if profile is PUBLISHED:
+            profile = QoSProfile(depth=self.kept, reliability=PUBLISHED.reliability)
+        return super().create_publisher(kind, topic, profile, **options)
 
     def create_subscription(
         self, kind: type, topic: str, callback: Callable[..., None], profile: Any, **options: Any
