@@ -60,13 +60,12 @@ def test_a_commanded_position_is_followed_and_the_state_of_the_joint_comes_back_
 def test_a_commanded_effort_is_the_duty_and_a_silent_sender_lets_go(graph, hardware):
     applied = graph.watch("applied_duty", Float64)
     graph.start("plant", "command_timeout:=2.0")
-    graph.start("controller", "command:=duty", "hall_timeout:=2.0")
+    graph.start("controller", "command:=duty", "command_timeout:=1.0", "hall_timeout:=2.0")
     moved = lambda: hardware.states and hardware.states[-1].position[0] > 0.3  # noqa: E731
     hardware.send_until(moved, "the shaft on its way", position=0.1, effort=0.4)
+    graph.until(lambda: applied and applied[-1].data == 0.0, "duty 0 once nobody commands")
+    graph.until(lambda: hardware.reported("no joint_commands for 1 s: duty 0"), "the warning")
     assert {each.data for each in applied} <= {0.0, 0.4}
-    graph.until(lambda: applied[-1].data == 0.0, "duty 0 once nobody commands")
-    graph.until(lambda: hardware.reported("no joint_commands for 0.05 s: duty 0"), "the warning")
-    assert not graph.node.count_publishers("active_setpoint") or not graph.node.count_subscribers("setpoints")
 
 
 def test_what_cannot_be_obeyed_is_named_and_what_is_not_commanded_changes_nothing(graph, hardware):
