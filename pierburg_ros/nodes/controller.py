@@ -43,8 +43,7 @@ class ControllerNode(ManagedNode):
         self._place = Place(self, time.monotonic())
         self._watchdog = self.create_timer(3600.0, self._on_silence, clock=steady)
         self._watchdog.cancel()
-        self.declare(LAW)
-        self.declare((*CONTROLLER, *PROTECTION, *WINDING))
+        self.declare((*LAW, *CONTROLLER, *PROTECTION, *WINDING))
         self.guarded = self._prepared()
         self._reports = ControllerReports(self.diagnostics, self.guarded)
         self._sample_clock = SampleClock(self)
@@ -59,8 +58,7 @@ class ControllerNode(ManagedNode):
         """Put settings in force without a jump of the duty; a setpoint counts like one from the topic."""
         settings = self._settings({**self.values, **changes})
         if self.guarded is None:
-            setpoint = changes.get("setpoint", settings.angle_closed)
-            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(setpoint)
+            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(changes["setpoint"])
             return
         loop = self.guarded.loop
         if "setpoint" in changes:

@@ -45,7 +45,7 @@ class PlantNode(LiveNode):
         self.pacer = Pacer(0.0)
         self._thread = ThreadPoolExecutor(1, "ticks")
         self.plant: SampledPlant | None = None
-        self.declare((*PLANT, *WINDING))
+        self.declare((*PLANT, *WINDING), more=True)
         self.plant = self._sampled_plant()
         self._reports = PlantReports(self)
         self._heat = HeatReport(self.diagnostics, self.plant.winding)
