@@ -53,15 +53,14 @@ class SourceOrder(Generic[Item]):
     def due(self, now: int) -> list[Item]:
         """Items sent before the horizon, `now` [ns] being the present."""
         late = self._late if now - self._late_at < MEMORY * 1e9 else 0
-        limit = now - max(self._horizon, round(MARGIN * late))
+        return self.until(now - max(self._horizon, round(MARGIN * late)))
+
+    def until(self, time: float) -> list[Item]:
+        """Items sent up to `time` [ns]; all that are left up to infinity."""
         found = []
-        while self._waiting and self._waiting[0].sent <= limit:
+        while self._waiting and self._waiting[0].sent <= time:
             found.append(heapq.heappop(self._waiting).item)
         return found
-
-    def rest(self) -> list[Item]:
-        """All items that are left."""
-        return [heapq.heappop(self._waiting).item for _ in range(len(self._waiting))]
 
 
 class SimulatedTime:
