@@ -48,6 +48,7 @@ class ControllerNode(ManagedNode):
         self._reports = ControllerReports(self.diagnostics, self.guarded)
         self._sample_clock = SampleClock(self)
         self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
+        self._applied_duty = Signal(self, Float64, "applied_duty", lambda message: self.guarded.applied(message.data))
         self._silent_since: float | None = None
         self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
         self.create_service(SetBool, "~/enable", self._on_enable)

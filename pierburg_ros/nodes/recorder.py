@@ -148,6 +148,10 @@ class RecorderNode(LiveNode):
 
     def _report(self) -> None:
         losses = {name: lost for name, (lost, _) in self._losses().items() if lost}
+        if self._time.waits:
+            self.diagnostics.begin("clock", WARN, "waiting for /clock, since use_sim_time is set: nothing is recorded")
+        else:
+            self.diagnostics.end("clock")
         if losses:
             text = ", ".join(f"{name} {lost}" for name, lost in sorted(losses.items()))
             self.diagnostics.begin("lost", WARN, f"messages lost on the way to the recorder: {text}")
@@ -164,9 +168,11 @@ class RecorderNode(LiveNode):
         self._time.tell()
 
     def _write(self, received: list[Received]) -> None:
-        timed = [(each, *self._time.of(each)) for each in received]
-        if not self.writer.write(timed, self.values["flush_interval"]):
-            self.diagnostics.begin("write", ERROR, self.writer.problem)
+        for number, timed in enumerate(self._time.parts(received)):
+            if number and self.writer.file is not None:
+                self._try_again()
+            if not self.writer.write(timed, self.values["flush_interval"]):
+                self.diagnostics.begin("write", ERROR, self.writer.problem)
 
     def _on_record(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:

@@ -19,7 +19,7 @@ def start(graph, **given):
     """The processes of one launch."""
     _, nodes = launched(**given)
     codes = [f"from pierburg_ros.nodes.{node['executable']} import main; main()" for node in nodes]
-    arguments = [command_line(node, graph.folder) for node in nodes]
+    arguments = [command_line(node) for node in nodes]
     return [graph.run([sys.executable, "-c", *each]) for each in map(lambda c, a: [c, *a], codes, arguments)]
 
 

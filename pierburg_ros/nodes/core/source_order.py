@@ -77,8 +77,8 @@ class SimulatedTime:
         if len(self._sent) > 2 * KEPT:
             del self._sent[:KEPT], self._clock[:KEPT]
 
-    def at(self, sent: int) -> int:
-        """The simulated time [ns] at `sent` [ns]; before the first reading, that one."""
+    def at(self, sent: int) -> int | None:
+        """The simulated time [ns] at `sent` [ns]; before the first reading, that one, and None while there is none."""
         if not self._clock:
-            return 0
+            return None
         return self._clock[max(bisect_right(self._sent, sent) - 1, 0)]

@@ -15,6 +15,8 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 from rcl_interfaces.msg import Parameter as ParameterMessage
+from rclpy.clock import JumpThreshold, TimeJump
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -43,6 +45,8 @@ class LiveNode(Node):
         self._declared: dict[str, Declaration] = {}
         self.diagnostics = Diagnostics(self, self.counters)
         self._given = self._overrides()
+        backward = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
+        self._jumps = self.get_clock().create_jump_callback(backward, post_callback=self._on_jump_back)
         self._complaints = unread_files(self.get_fully_qualified_name(), sys.argv)
 
     def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
@@ -109,6 +113,9 @@ class LiveNode(Node):
             return self._refused(str(error))
         result = super().set_parameters_atomically(checked)
         return result if result.successful else self._refused(result.reason)
+
+    def _on_jump_back(self, jump: TimeJump) -> None:
+        self.diagnostics.refuse(f"the clock went back by {-jump.delta.nanoseconds * 1e-9:.3g} s")
 
     def _on_message(self, message: ParameterMessage) -> None:
         self.set_parameters_atomically([Parameter.from_parameter_msg(message)])

@@ -28,6 +28,11 @@ class Topic:
     kind: str
     qos: tuple[dict[str, Any], ...] = ()
 
+    @property
+    def lasts(self) -> bool:
+        """Whether its newest message holds on for readers that come later."""
+        return all(offer["durability"] == "transient_local" for offer in self.qos)
+
 
 class RecordingFile:
     """An MCAP file being written."""

@@ -47,6 +47,7 @@ class ControllerReports:
             diagnostics.end("waiting")
             self._step()
         self.fault()
+        self._contradicted()
         self._heat.tell()
 
     def fault(self) -> None:
@@ -58,6 +59,14 @@ class ControllerReports:
         if lost is not None:
             text = f"{lost.text}: {answer(self._guarded.fallback)}"
             self._diagnostics.begin(lost.name, ERROR, text, SENSOR)
+
+    def _contradicted(self) -> None:
+        """Name an angle that does not go where the duty drives it."""
+        found = self._guarded.contradiction.found
+        if found is None:
+            self._diagnostics.end("contradiction")
+        else:
+            self._diagnostics.begin("contradiction", WARN, found.text, SENSOR)
 
     def no_clock(self) -> None:
         """A sample came while no simulated time is known."""
