@@ -31,6 +31,8 @@ HORIZON = 0.1
 """Time for which messages are held back to be written in the order of their sending [s]."""
 WRITE_PERIOD = 0.05
 """Time between two writings [s]."""
+AT_THE_START = 5_000_000_000
+"""Time [ns] for which messages wait for the first `/clock`, which may be read after what was sent behind it."""
 PATIENCE = 5.0
 """Longest wait [s] for what was sent before a file is to end: a publisher that was killed is waited for in vain."""
 LOOK_PERIOD = 0.5
@@ -164,7 +166,8 @@ class RecorderNode(LiveNode):
 
     def _write_due(self) -> None:
         self._take()
-        self._write(self._order.due(time.time_ns()))
+        first_clock = AT_THE_START if self._time.waits else 0
+        self._write(self._order.due(time.time_ns() - first_clock))
         self._time.tell()
 
     def _write(self, received: list[Received]) -> None:

@@ -69,16 +69,18 @@ class SimulatedTime:
     def __init__(self) -> None:
         self._sent: list[int] = []
         self._clock: list[int] = []
+        self._first: int | None = None
 
     def reading(self, sent: int, clock: int) -> None:
         """The clock said `clock` [ns] from `sent` [ns] on; readings come in the order of sending."""
+        self._first = sent if self._first is None else self._first
         self._sent.append(sent)
         self._clock.append(clock)
         if len(self._sent) > 2 * KEPT:
             del self._sent[:KEPT], self._clock[:KEPT]
 
     def at(self, sent: int) -> int | None:
-        """The simulated time [ns] at `sent` [ns]; before the first reading, that one, and None while there is none."""
-        if not self._clock:
+        """The simulated time [ns] at `sent` [ns]; None before the first reading."""
+        if self._first is None or sent < self._first:
             return None
         return self._clock[max(bisect_right(self._sent, sent) - 1, 0)]

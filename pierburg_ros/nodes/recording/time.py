@@ -82,8 +82,9 @@ class RecordedTime:
 
     def tell(self) -> None:
         """Publish up to which simulated time every message of the plant has come."""
-        if CLOCK in self._last:
-            self._publish(self._simulated.at(min(self._last.values())) or 0)
+        until = self._simulated.at(min(self._last.values())) if self._last else None
+        if until is not None:
+            self._publish(until)
 
     def leave(self) -> None:
         """Publish that nobody need wait any more."""
