@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.nodes.core.joint import SHAFT
 
 ROBOT = ElementTree.parse(Path(__file__).parent.parent / "urdf" / "valve.urdf").getroot()
 JOINT = ROBOT.find("joint")
@@ -27,8 +28,7 @@ def test_it_is_a_tree_of_links_with_one_root():
 
 
 def test_the_joint_is_the_one_in_joint_states():
-    messages = pytest.importorskip("pierburg_ros.nodes.graph.messages")
-    assert JOINT.attrib["name"] == messages.SHAFT
+    assert JOINT.attrib["name"] == SHAFT
     assert JOINT.attrib["type"] == "revolute"
 
 

@@ -12,8 +12,8 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.errors import InputError, near
+from pierburg_ros.starting import NODES
 
-NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
 DISCOVERY = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 """How far nodes look for others: LOCALHOST, SUBNET or OFF."""
 

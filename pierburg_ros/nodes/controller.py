@@ -45,12 +45,12 @@ class ControllerNode(ManagedNode):
         self._place = Place(self, time.monotonic())
         self._watchdog = self.create_timer(3600.0, self._on_silence, clock=steady)
         self._watchdog.cancel()
-        self.declare(LAW)
-        self.declare((*CONTROLLER, *PROTECTION, *WINDING))
+        self.declare((*LAW, *CONTROLLER, *PROTECTION, *WINDING))
         self.guarded = self._prepared()
         self._reports = ControllerReports(self.diagnostics, self.guarded)
         self._sample_clock = SampleClock(self)
         self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
+        self._applied_duty = Signal(self, Float64, "applied_duty", lambda message: self.guarded.applied(message.data))
         self._silent_since: float | None = None
         if self.guarded.loop.forwarded is None:
             self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
@@ -65,8 +65,7 @@ class ControllerNode(ManagedNode):
         """Put settings in force without a jump of the duty; a setpoint counts like one from the topic."""
         settings = self._settings({**self.values, **changes})
         if self.guarded is None:
-            setpoint = changes.get("setpoint", settings.angle_closed)
-            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(setpoint)
+            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(changes["setpoint"])
             return
         loop = self.guarded.loop
         if "setpoint" in changes:

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from sensor_msgs.msg import JointState
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.nodes.core.joint import joint_name
 from pierburg_ros.nodes.core.joint_command import ARRAYS, JointCommand
-from pierburg_ros.nodes.graph import messages
 from pierburg_ros.nodes.graph.parameters import LiveNode
 from pierburg_ros.nodes.graph.signals import Signal
 
@@ -21,7 +21,7 @@ class JointCommands:
 
     def __init__(self, node: LiveNode, command: str, take: Callable[[float], object]) -> None:
         self._node, self._take, self._array = node, take, ARRAYS[command]
-        self._command = JointCommand(messages.joint_name(node.get_namespace()))
+        self._command = JointCommand(joint_name("", node.get_namespace()))
         self._signal = Signal(node, JointState, "joint_commands", self._on_command)
 
     def _on_command(self, message: JointState) -> None:

@@ -47,6 +47,7 @@ class ControllerReports:
             diagnostics.end("waiting")
             self._step()
         self.fault()
+        self._contradicted()
         self._heat.tell()
 
     def fault(self) -> None:
@@ -65,6 +66,14 @@ class ControllerReports:
             self._diagnostics.end("duty_clipped")
         else:
             self._diagnostics.begin("duty_clipped", WARN, f"duty {duty:g} is beyond +-1 and was clipped")
+
+    def _contradicted(self) -> None:
+        """Name an angle that does not go where the duty drives it."""
+        found = self._guarded.contradiction.found
+        if found is None:
+            self._diagnostics.end("contradiction")
+        else:
+            self._diagnostics.begin("contradiction", WARN, found.text, SENSOR)
 
     def no_clock(self) -> None:
         """A sample came while no simulated time is known."""
