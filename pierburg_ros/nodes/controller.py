@@ -14,7 +14,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import Controller, Setpoints, Settings, read_setpoint_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.controller_commands import JointCommands
-from pierburg_ros.nodes.controller_outputs import Outputs
+from pierburg_ros.nodes.controller_outputs import TOPICS, Outputs
 from pierburg_ros.nodes.controller_place import Place
 from pierburg_ros.nodes.core.commanded_duty import CommandedDuty
 from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW, PROTECTION, WINDING
@@ -36,6 +36,8 @@ FAULT_PERIOD = 0.01
 
 class ControllerNode(ManagedNode):
     """Answers Hall samples with duties; a lost angle is answered with duty 0, or as `on_fault` says."""
+
+    later = TOPICS
 
     def __init__(self) -> None:
         super().__init__("controller")

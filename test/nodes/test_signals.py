@@ -51,9 +51,19 @@ def test_overrides_hold_and_one_for_a_topic_that_does_not_exist_is_named(graph):
     )
     topic = "/recorder/set_parameter"
     graph.until(lambda: reliabilities(graph, topic) == [ReliabilityPolicy.BEST_EFFORT], "the override")
+    graph.until((graph.folder / "run.mcap").exists, "its file, after all that is said about parameters")
     _, output = graph.ended(process)
     assert "recorder has no topic /nowhere for qos_overrides" in output
     assert "no topic /recorder/set_parameter" not in output
+
+
+def test_overrides_hold_for_what_the_controller_publishes_once_it_is_active(graph):
+    given = "qos_overrides./duty.publisher.reliability:=best_effort"
+    process = graph.start("controller", given, "qos_overrides./controller/error.publisher.depth:=7")
+    offered = lambda: [each.qos_profile.reliability for each in graph.node.get_publishers_info_by_topic("/duty")]  # noqa: E731
+    graph.until(lambda: offered() == [ReliabilityPolicy.BEST_EFFORT], "the override")
+    _, output = graph.ended(process)
+    assert "qos_overrides" not in output
 
 
 DEPTHS = """

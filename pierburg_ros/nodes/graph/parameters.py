@@ -40,6 +40,9 @@ class LiveNode(Node):
     `values` holds what is in force. A subclass declares in its constructor, then calls `open_parameters`.
     """
 
+    later: tuple[str, ...] = ()
+    """Topics which a subclass has only at times, and for which `qos_overrides` may be given all the same."""
+
     def __init__(self, name: str) -> None:
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
         self.stopping = Event()
@@ -163,6 +166,7 @@ class LiveNode(Node):
     def _unused_overrides(self) -> list[str]:
         """Complaints about qualities of service that were given for topics which this node does not have."""
         topics = {each.topic_name for each in (*self.publishers, *self.subscriptions)}
+        topics |= {self.resolve_topic_name(topic) for topic in self.later}
         given = {name.split(".")[0] for name in self.get_parameters_by_prefix("qos_overrides")}
         return [
             f"{self.get_name()} has no topic {topic} for qos_overrides; write its full name, as in"
