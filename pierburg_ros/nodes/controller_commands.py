@@ -21,7 +21,7 @@ class JointCommands:
 
     def __init__(self, node: LiveNode, command: str, take: Callable[[float], object]) -> None:
         self._node, self._take, self._array = node, take, ARRAYS[command]
-        self._command = JointCommand(joint_name("", node.get_namespace()))
+        self._command = JointCommand(joint_name(node.values["joint"], node.get_namespace()))
         self._signal = Signal(node, JointState, "joint_commands", self._on_command)
 
     def _on_command(self, message: JointState) -> None:

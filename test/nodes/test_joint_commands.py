@@ -82,6 +82,21 @@ def test_what_cannot_be_obeyed_is_named_and_what_is_not_commanded_changes_nothin
     assert active[-1].data == 0.6 and not hardware.reported("Setpoint nan")
 
 
+@pytest.mark.parametrize(
+    ("parameters", "joint"), [((), "left_swirl_shaft"), (("joint:=valve",), "valve")], ids=["namespace", "parameter"]
+)
+def test_the_joint_is_called_as_the_other_nodes_of_the_namespace_call_it(graph, parameters, joint):
+    active = graph.watch("left/active_setpoint", Float64)
+    publisher = graph.node.create_publisher(JointState, "left/joint_commands", QoSProfile(depth=1))
+    graph.start("controller", "hall_timeout:=0", *parameters, arguments=("-r", "__ns:=/left"))
+
+    def followed():
+        publisher.publish(JointState(name=[joint], position=[0.6]))
+        return active and active[-1].data == 0.6
+
+    graph.until(followed, "the position")
+
+
 def test_a_clipped_duty_is_named_and_setpoints_are_refused_where_duties_are_forwarded(graph, hardware):
     duty = graph.watch("duty", Float64)
     graph.start("controller", "command:=duty", "command_timeout:=0", "hall_timeout:=0")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pierburg_ros.control import SETTINGS
 from pierburg_ros.nodes.core.depth import DEPTH
+from pierburg_ros.nodes.core.joint import JOINT
 from pierburg_ros.nodes.core.joint_command import ARRAYS
 from pierburg_ros.nodes.core.protection.fallback import CHOICES
 from pierburg_ros.parameter import Parameter as Declaration
@@ -21,6 +22,7 @@ CONTROLLER = (
         "autostart", True, "be active at once; otherwise wait for the transitions of a managed node", fixed=True
     ),
     Declaration("exclusive", True, "send no duty while another node does; take over when it is gone"),
+    Declaration("joint", "", JOINT, fixed=True),
     Declaration(
         "command",
         "position",

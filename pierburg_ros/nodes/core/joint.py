@@ -2,7 +2,7 @@
 
 SHAFT = "swirl_shaft"
 """Name of the joint outside any namespace."""
-JOINT = f"name of the joint in joint_states; empty: {SHAFT}, with the namespace and _ before it"
+JOINT = f"name of the joint; empty: {SHAFT}, with the namespace and _ before it"
 """What the parameter of every node that names the joint means."""
 
 
