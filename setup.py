@@ -30,8 +30,7 @@ COMMANDS = (
 # (setup.cfg), where `ros2 run pierburg_ros NAME` finds them. pip never does: with it they would crowd the path.
 FOR_ROS_RUN = (
     [
-        *(f"{name} = pierburg_ros.nodes.{name}:main" for name in NODES),
-        *(f"{name} = pierburg_ros.cli.app:{name}" for name in COMMANDS),
+        *(f"{name} = pierburg_ros.starting:{name}" for name in (*NODES, *COMMANDS)),
     ]
     if {"install", "develop"} & set(sys.argv)
     else []
@@ -73,8 +72,6 @@ setup(
     version=MANIFEST.findtext("version"),
     description="Simulate, control and diagnose the Pierburg mechatronic actuator over ROS 2.",
     license="Apache-2.0",
-    maintainer="pierburg_ros developers",
-    maintainer_email="maintainers@pierburg-ros.example.org",
     python_requires=">=3.10,<3.14",
     packages=find_packages(exclude=["test", "test.*"]),
     package_data={
@@ -130,7 +127,7 @@ setup(
         "rerun": ["rerun-sdk>=0.24"],
     },
     entry_points={
-        "console_scripts": ["pierburg = pierburg_ros.cli.app:main", *FOR_ROS_RUN],
+        "console_scripts": ["pierburg = pierburg_ros.starting:pierburg", *FOR_ROS_RUN],
     },
     zip_safe=True,
 )

@@ -1,4 +1,4 @@
-"""How probable an effect is beside a remainder, from trials: python benchmarks/belief.py RUN [RUN...]
+"""How probable an effect is beside a remainder, from trials: `python benchmarks/belief.py RUN [RUN...]`.
 
 A RUN is the output of `pierburg prove` with the kinds beside, remainder and outside. Every effect that was judged
 there, named or doubted, is one case: its evidence, and whether it was concealed. Prints how often those of a

@@ -1,4 +1,4 @@
-"""How often names of a confidence are right: python benchmarks/calibration.py DIAGNOSES TRUTHS [TRUTHS...]
+"""How often names of a confidence are right: `python benchmarks/calibration.py DIAGNOSES TRUTHS [TRUTHS...]`.
 
 DIAGNOSES has a folder for each recording with its diagnosis.json, a folder TRUTHS one of the same name with its
 truth.json, which lists the concealed effects. A prefix up to the first "t-" does not count. Writes its section of

@@ -1,4 +1,4 @@
-"""What `pierburg tune --model` gives for plants with an effect, into docs/control.md: python docs/corrected_loops.py
+"""What `pierburg tune --model` gives for plants with an effect, into docs/control.md: `python docs/corrected_loops.py`.
 
 A few minutes on an idle machine; the numbers are the same each time.
 """

@@ -1,4 +1,4 @@
-"""Writes the bag `throttle`, which stands for one of your own: python throttle_bag.py
+"""Writes the bag `throttle`, which stands for one of your own: `python throttle_bag.py`.
 
 An electronic throttle (my_actuator.yaml), simulated with what its description does not say. The bag has foreign topics
 and units: /throttle/pwm is a Float32 in percent, /throttle/adc counts of a 12 bit converter over 5 V.

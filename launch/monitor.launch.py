@@ -5,20 +5,21 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
+from pierburg_ros.processes import parameter_arguments
 
 ARGUMENTS = {
     "namespace": ("", "namespace in which the actuator's topics are"),
     "actuator": ("pierburg", "what runs: the name of an actuator, or the path of its description"),
     "model": ("", "model file that the monitor compares with; none: the actuator as described"),
-    "joint": ("swirl_shaft", "name of the actuator's joint in joint_states"),
+    "joint": ("", "name of the joint in joint_states; none: swirl_shaft, with the namespace before it"),
     "recorder": ("recorder", "node that is asked to split its recording at a finding; empty: none"),
-    "log_level": ("info", "least severity that the node prints: debug, info, warn, error or fatal"),
 }
 """Default and description of each argument but those with choices."""
 CHOICES = {
     "angle": (["joint_states", "hall_voltage"], "topic of the sensor; joint_states says when a sample was taken"),
     "duty": (["applied_duty", "duty"], "topic of the duty; applied_duty is what the actuator really obeyed"),
     "simulated_time": (["false", "true"], "whether time comes from /clock, as with a plant in simulated time"),
+    "log_level": (["info", "debug", "warn", "error", "fatal"], "least severity that the node prints"),
 }
 """Choices, the first of which is the default, and description of the other arguments."""
 
@@ -51,8 +52,7 @@ def nodes(context):
             executable="monitor",
             name="monitor",
             namespace=given["namespace"],
-            parameters=[parameters],
-            ros_arguments=["--log-level", given["log_level"]],
+            ros_arguments=["--log-level", given["log_level"], *parameter_arguments(parameters)],
             output="screen",
         )
     ]

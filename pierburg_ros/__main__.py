@@ -1,5 +1,5 @@
 """`python -m pierburg_ros`: the `pierburg` command."""
 
-from pierburg_ros.cli.app import main
+from pierburg_ros.starting import command
 
-main()
+command("pierburg")

@@ -67,7 +67,7 @@ class Deadline:
         return part
 
     def check(self) -> None:
-        """OutOfTime once the time is over."""
+        """Raise OutOfTime once the time is over."""
         if self.left <= 0.0:
             raise OutOfTime
 

@@ -15,10 +15,11 @@ MOST_COMPARED = 1000
 
 
 class InputError(ValueError):
-    """Something a person gave is not usable; the message is one line: what was found, what was expected, what to do."""
+    """Something a person gave is not usable; a message is one line: what was found, what was expected, what to do."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(one_line(message))
+    def __init__(self, *messages: str) -> None:
+        """Of several messages each is a line of its own."""
+        super().__init__("\n".join(one_line(message) for message in messages))
 
 
 def one_line(text: str) -> str:

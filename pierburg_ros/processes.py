@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 import random
 import signal
@@ -50,12 +51,11 @@ def start_node(
     name: str, parameters: Mapping[str, object], output: IO[bytes] | int, environment: Mapping[str, str]
 ) -> subprocess.Popen[bytes]:
     """The process of a node, started with parameters; `output` takes what it prints."""
-    given = [word for key, value in parameters.items() for word in ("-p", f"{key}:={ros_text(value)}")]
     code = (
         f"from pierburg_ros.processes import end_with_parent; end_with_parent({os.getpid()});"
         f"from pierburg_ros.nodes.{name} import main; main()"
     )
-    command = [sys.executable, "-c", code, "--ros-args", *given]
+    command = [sys.executable, "-c", code, "--ros-args", *parameter_arguments(parameters)]
     variables = {**os.environ, **environment}
     return subprocess.Popen(command, env=variables, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
 
@@ -69,9 +69,9 @@ def end_with_parent(parent: int, told: int = signal.SIGINT) -> None:
         raise SystemExit  # it has ended before it could be asked for
 
 
-def ros_text(value: object) -> str:
-    """A value as the command line of ROS wants it."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
+def parameter_arguments(parameters: Mapping[str, object]) -> list[str]:
+    """What sets parameters behind `--ros-args`: JSON is YAML, in which a text such as 1e5 stays a text."""
+    return [word for name, value in parameters.items() for word in ("-p", f"{name}:={json.dumps(value, default=str)}")]
 
 
 def end(process: subprocess.Popen[bytes]) -> int:

@@ -53,8 +53,9 @@ ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "ver
     "viewers",
 }
 ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
-ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers"}
-ALLOWED["__main__"] = {"cli"}
+ALLOWED["starting"] = set()
+ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers", "starting"}
+ALLOWED["__main__"] = {"starting"}
 ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {

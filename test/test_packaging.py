@@ -14,11 +14,11 @@ import pytest
 import yaml
 from packaging.requirements import Requirement
 from packaging.version import Version
-from support.launch_file import launched
+from support.launch_file import given_to, launched
 
 from pierburg_ros.control import SETTINGS, Settings
-from pierburg_ros.control.parameter_file import read_parameter_file
-from pierburg_ros.nodes.core.controller_parameters import CONTROLLER
+from pierburg_ros.control.parameter_file import NODE_PARAMETERS, read_parameter_file
+from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, PROTECTION, WINDING
 from pierburg_ros.nodes.core.monitor_parameters import MONITOR
 from pierburg_ros.nodes.core.plant_parameters import PLANT
 from pierburg_ros.nodes.core.recorder_parameters import RECORDER
@@ -26,9 +26,11 @@ from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
-MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
 MONITOR_ALONE = ROOT / "launch" / "monitor.launch.py"
+MONITORED = ROOT / "launch" / "monitored_valve.launch.py"
+TWO = ROOT / "launch" / "two_valves.launch.py"
 REPLAY = ROOT / "launch" / "replay.launch.py"
+LINTERS = ROOT / "test" / "test_ament.py"
 MANIFEST = ElementTree.parse(ROOT / "package.xml").getroot()
 SETUP = (ROOT / "setup.py").read_text()
 NOT_OF_ROS = re.compile(r"python3-")
@@ -39,10 +41,10 @@ def dependencies():
     return {element.text for element in MANIFEST if element.tag.endswith("depend")}
 
 
-def test_the_manifest_is_format_3_with_a_valid_maintainer():
+def test_the_manifest_is_format_3_and_invents_neither_a_maintainer_nor_an_address():
     assert MANIFEST.attrib["format"] == "3"
-    address = MANIFEST.find("maintainer").attrib["email"]
-    assert re.fullmatch(r"[\w.+-]+@[\w-]+(\.[\w-]+)+", address)
+    assert MANIFEST.find("maintainer").attrib["email"].endswith(".invalid")
+    assert MANIFEST.find("url") is None and "maintainer" not in SETUP and "url=" not in SETUP
     assert MANIFEST.findtext("license") == "Apache-2.0"
     assert MANIFEST.findtext("export/build_type") == "ament_python"
 
@@ -57,7 +59,8 @@ def test_every_ros_package_that_the_nodes_import_is_a_dependency():
 
     used = {name.split(".")[0] for source in SOURCES for name in imported(source)} & ROS
     used |= {name.split(".")[0] for launch in ROOT.glob("launch/*.py") for name in imported(launch)} & ROS
-    used |= set(re.findall(r'package="(\w+)"', MONITORED.read_text())) - {"pierburg_ros"}
+    used |= {node["package"] for node in launched(MONITORED)[1]} - {"pierburg_ros"}
+    used |= set(re.findall(r'importorskip\("(ament_\w+)', LINTERS.read_text()))
     assert used == {name for name in dependencies() if not NOT_OF_ROS.match(name)}
 
 
@@ -122,20 +125,21 @@ def test_the_launch_file_names_executables_and_parameter_files_that_exist():
     assert [node["executable"] for node in nodes] == ["plant", "controller", "recorder"]
     for node in nodes:
         assert node["executable"] in entry_points("install")
-        assert Path(node["parameters"][0]).exists()
+        (file,), _ = given_to(node)
+        assert Path(file).exists()
 
 
 def test_every_launch_argument_has_a_description():
     arguments, _ = launched()
-    wanted = {"namespace", "actuator", "model", "setpoint", "output", "time", "record", "log_level", "config"}
-    assert set(arguments) == wanted
+    of_nodes = {"actuator", "model", "setpoint", "output"}
+    assert set(arguments) == {"namespace", "time", "record", "log_level", "config", "on_exit", *of_nodes}
     assert all(len(each["description"]) > 20 for each in arguments.values())
 
 
 @pytest.mark.parametrize("time", ["wall", "simulated", "lockstep"])
 def test_one_launch_argument_sets_the_time_of_all_nodes(time):
     _, nodes = launched(time=time)
-    plant, controller, recorder = (node["parameters"][1] for node in nodes)
+    plant, controller, recorder = (given_to(node)[1] for node in nodes)
     assert controller["use_sim_time"] == recorder["use_sim_time"] == plant["simulated_time"] == (time != "wall")
     assert plant["lockstep"] == (time == "lockstep")
 
@@ -145,9 +149,51 @@ def test_the_launch_file_gives_only_parameters_that_exist():
     declared = (PLANT, CONTROLLER, RECORDER)
     for node, declarations in zip(nodes, declared, strict=True):
         accepted = {each.name: each for each in declarations}
-        for name, value in node["parameters"][1].items():
+        for name, value in given_to(node)[1].items():
             assert name == "use_sim_time" or accepted[name].accepted(value) == value
         assert node["namespace"] == "left"
+
+
+def test_a_text_that_looks_like_a_number_stays_a_text_and_a_number_a_number():
+    _, nodes = launched(output="1e5", setpoint="1")
+    _, controller, recorder = (given_to(node)[1] for node in nodes)
+    assert recorder["output"] == "1e5" and '"1e5"' in nodes[2]["ros_arguments"][-1]
+    assert isinstance(controller["setpoint"], float)
+    with pytest.raises(ValueError, match="setpoint is 'wide'; expected a number"):
+        launched(setpoint="wide")
+
+
+def test_switches_have_choices_so_that_no_other_word_passes_for_false():
+    arguments, _ = launched()
+    assert arguments["record"]["choices"] == ["true", "false"]
+    arguments, _ = launched(MONITORED)
+    assert {arguments[name]["choices"][0] for name in ("driver", "monitor", "picture")} == {"true"}
+
+
+@pytest.mark.parametrize("wanted", ["shutdown", "respawn", "ignore"])
+def test_an_argument_says_what_follows_when_plant_or_controller_ends(wanted):
+    _, (plant, controller, recorder) = launched(on_exit=wanted)
+    for node in (plant, controller):
+        assert ("on_exit" in node, node.get("respawn", False)) == (wanted == "shutdown", wanted == "respawn")
+    assert "on_exit" not in recorder and "respawn" not in recorder
+
+
+def test_the_picture_has_the_joint_and_the_frames_of_its_namespace():
+    _, nodes = launched(MONITORED, namespace="left", driver="false")
+    assert [node["executable"] for node in nodes] == ["monitor", "robot_state_publisher"]
+    _, given = given_to(nodes[1])
+    assert given["frame_prefix"] == "left_"
+    joint = ElementTree.fromstring(given["robot_description"]).find("joint")
+    assert joint.get("name") == "left_swirl_shaft"
+
+
+def test_two_valves_are_the_loops_and_the_monitored_valves_of_two_namespaces():
+    _, included = launched(TWO, output="runs")
+    assert [(file.name, said["namespace"]) for file, said in included] == [
+        (name, side) for side in ("left", "right") for name in ("closed_loop.launch.py", "monitored_valve.launch.py")
+    ]
+    for file, said in included:
+        assert file.exists() and said.keys() <= launched(file)[0].keys()
 
 
 def test_the_launch_file_leaves_the_recorder_out_when_told():
@@ -160,10 +206,10 @@ def test_the_monitor_is_launched_with_parameters_that_it_has():
     assert all(len(each["description"]) > 20 for each in arguments.values())
     assert node["executable"] in entry_points("install") and node["namespace"] == "left"
     accepted = {each.name: each for each in MONITOR}
-    (parameters,) = node["parameters"]
-    assert parameters.pop("use_sim_time") is True
-    assert parameters["angle_topic"] == "hall_voltage"
-    for name, value in parameters.items():
+    _, given = given_to(node)
+    assert given.pop("use_sim_time") is True
+    assert given["angle_topic"] == "hall_voltage"
+    for name, value in given.items():
         assert accepted[name].accepted(value) == value
     for name in ("angle", "duty"):
         assert set(arguments[name]["choices"]) == set(accepted[f"{name}_topic"].choices)
@@ -269,13 +315,13 @@ def parameters(file):
 
 
 def test_the_launch_file_of_a_real_valve_starts_executables_with_parameters_that_they_have():
-    text = MONITORED.read_text()
-    ours = re.findall(r'package="pierburg_ros",\s+executable="(\w+)"', text)
-    assert sorted(ours) == ["monitor", "serial_driver"]
-    assert set(ours) <= set(entry_points("install"))
-    given = [re.findall(r'"(\w+)"', names) for names in re.findall(r"for name in \((.+?)\)", text)]
-    assert set(given[0]) <= {each.name for each in SERIAL_DRIVER}
-    assert set(given[1]) <= {each.name for each in MONITOR}
+    _, nodes = launched(MONITORED, model="m.yaml")
+    assert [node["executable"] for node in nodes] == ["serial_driver", "monitor", "robot_state_publisher"]
+    assert {node["executable"] for node in nodes[:2]} <= set(entry_points("install"))
+    for node, declarations in zip(nodes, (SERIAL_DRIVER, MONITOR), strict=False):
+        accepted = {each.name: each for each in declarations}
+        for name, value in given_to(node)[1].items():
+            assert accepted[name].accepted(value) == value
 
 
 def test_policies_and_urdf_are_installed():
@@ -296,6 +342,7 @@ def test_the_plants_file_names_parameters_that_exist_in_their_range():
 
 def test_the_controllers_file_holds_the_settings_in_the_package():
     assert read_parameter_file(ROOT / "config" / "controller.yaml") == Settings()
+    assert {each.name for each in (*CONTROLLER, *PROTECTION, *WINDING)} <= NODE_PARAMETERS
     assert {setting.name for setting in SETTINGS} <= set(parameters("controller.yaml"))
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.nodes.core.joint import SHAFT
 
 ROBOT = ElementTree.parse(Path(__file__).parent.parent / "urdf" / "valve.urdf").getroot()
 JOINT = ROBOT.find("joint")
@@ -27,9 +28,23 @@ def test_it_is_a_tree_of_links_with_one_root():
 
 
 def test_the_joint_is_the_one_in_joint_states():
-    messages = pytest.importorskip("pierburg_ros.nodes.graph.messages")
-    assert JOINT.attrib["name"] == messages.SHAFT
+    assert JOINT.attrib["name"] == SHAFT
     assert JOINT.attrib["type"] == "revolute"
+
+
+def test_ros2_control_commands_the_joint_within_its_range_and_by_the_topics_of_the_nodes():
+    control = ROBOT.find("ros2_control")
+    topics = {each.attrib["name"]: each.text for each in control.iterfind("hardware/param")}
+    assert (topics["joint_commands_topic"], topics["joint_states_topic"]) == ("joint_commands", "joint_states")
+    (joint,) = control.findall("joint")
+    assert joint.attrib == {"name": JOINT.attrib["name"]}
+    limits = {
+        each.attrib["name"]: tuple(float(limit.text) for limit in each) for each in joint.findall("command_interface")
+    }
+    stops = tuple(float(JOINT.find("limit").attrib[name]) for name in ("lower", "upper"))
+    assert limits == {"position": stops, "effort": (-1.0, 1.0)}
+    states = {each.attrib["name"] for each in joint.findall("state_interface")}
+    assert states == {"position", "velocity", *limits}
 
 
 def test_its_limits_are_the_actuators():

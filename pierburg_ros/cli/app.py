@@ -239,27 +239,3 @@ def show_log() -> None:
     if not log.handlers:
         log.addHandler(logging.StreamHandler())
         log.setLevel(logging.INFO)
-
-
-def standalone(name: str) -> Callable[[], None]:
-    """The command `name` as an executable of its own, as `ros2 run pierburg_ros NAME` starts it."""
-
-    def run() -> None:
-        main([name, *sys.argv[1:]])
-
-    return run
-
-
-demo = standalone("demo")
-simulate = standalone("simulate")
-experiment = standalone("experiment")
-identify = standalone("identify")
-replay = standalone("replay")
-diagnose = standalone("diagnose")
-fleet = standalone("fleet")
-inspect = standalone("inspect")
-export = standalone("export")
-actuator = standalone("actuator")
-recover = standalone("recover")
-prove = standalone("prove")
-tune = standalone("tune")

@@ -24,6 +24,7 @@ from pierburg_ros.library.diagnosing import Diagnosis
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
 from pierburg_ros.library.reading import read
+from pierburg_ros.nodes.core.depth import KEPT
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
@@ -82,9 +83,11 @@ def recorded_run(
     environment = own_graph()
     pace = {"simulated_time": True, "lockstep": True} if simulated_time else {}
     nodes: dict[str, dict[str, object]] = {
-        "plant": {"hall_voltage_noise": NOISE, **pace, **physics},
-        "controller": {"use_sim_time": simulated_time, **({"hall_timeout": 0.0} if simulated_time else {})},
+        "plant": {"depth": KEPT, "hall_voltage_noise": NOISE, **pace, **physics},
+        "controller": {"depth": KEPT, "use_sim_time": simulated_time},
     }
+    if simulated_time:
+        nodes["controller"]["hall_timeout"] = 0.0
     with progress() as show:
         show(Step("compiling simulator and controller, once on a machine"))
         compile_kernels()

@@ -36,7 +36,7 @@ def export(
 
 
 def refuse_folder(output: Path) -> None:
-    """InputError where the output cannot become a file."""
+    """Raise InputError where the output cannot become a file."""
     if output.is_dir():
         raise InputError(f"{output} is a folder, expected a file to write. Add a name, e.g. {output / 'model.xml'}.")
     present = next(path for path in output.absolute().parents if path.exists())

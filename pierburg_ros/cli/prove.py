@@ -88,7 +88,7 @@ def prove(
 
 
 def refuse(why: str, given: Mapping[str, object]) -> None:
-    """InputError for options that say nothing here, and `why`."""
+    """Raise InputError for options that say nothing here, and `why`."""
     for option, value in given.items():
         if value:
             raise InputError(f"Found {option} {why}.")

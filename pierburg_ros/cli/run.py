@@ -12,8 +12,8 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.errors import InputError, near
+from pierburg_ros.starting import NODES
 
-NODES = ("plant", "controller", "recorder", "monitor", "serial_driver")
 DISCOVERY = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 """How far nodes look for others: LOCALHOST, SUBNET or OFF."""
 
@@ -49,7 +49,7 @@ def recorded_into(node: str, output: Path | None) -> list[str]:
 
 
 def require_ros() -> None:
-    """InputError where the ROS client library is not installed."""
+    """Raise InputError where the ROS client library is not installed."""
     if find_spec("rclpy") is None:
         raise InputError(
             "ROS 2 was not found (no module rclpy). Install its wheels with pip install 'pierburg_ros[ros]', "

@@ -112,7 +112,7 @@ class Effort:
 
 
 def refuse_for_one_plant(given: Mapping[str, object]) -> None:
-    """InputError where an option of the whole set of plants is given with a model."""
+    """Raise InputError where an option of the whole set of plants is given with a model."""
     for option, value in given.items():
         if value is not None:
             raise InputError(f"Found {option} with a model; it belongs to the set of plants. Leave one of them out.")

@@ -39,7 +39,7 @@ def task_for(model: Model, goal: Goal, predict: bool | None = None, schedule: bo
 
 
 def refuse_uncontrolled(model: Model) -> None:
-    """InputError where the controller cannot be tuned for an actuator."""
+    """Raise InputError where the controller cannot be tuned for an actuator."""
     actuator = model.actuator
     if actuator.drive != "voltage" or actuator.quantity != "hall_voltage" or "spring_stiffness" not in model.values:
         raise InputError(

@@ -15,8 +15,8 @@ ANY = "/**"
 """Key of a node of any name in any namespace."""
 FORM = "a parameter file (YAML)"
 NODE_PARAMETERS = {
-    *("use_sim_time", "actuator", "hardware_id", "autostart", "exclusive"),
-    *("setpoint", "setpoint_file", "hall_timeout", "publish_internals", "longest_step"),
+    *("use_sim_time", "depth", "actuator", "hardware_id", "autostart", "exclusive", "joint", "command"),
+    *("command_timeout", "setpoint", "setpoint_file", "hall_timeout", "publish_internals", "longest_step"),
     *("hall_margin", "top_speed", "angle_timeout", "frozen_retry", "on_fault", "hold_time", "close_duty"),
     *("rated_current", "thermal_time_constant"),
 }

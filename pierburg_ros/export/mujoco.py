@@ -164,7 +164,7 @@ def has_bristles(contents: Contents) -> bool:
 
 
 def bristles(contents: Contents, gear: float, step: float) -> str:
-    """LuGre friction at the motor: stiffness, damping, sliding and breakaway torque, Stribeck velocity."""
+    """Friction of LuGre at the motor: stiffness, damping, sliding and breakaway torque, Stribeck velocity."""
     sliding = contents.base("coulomb_friction")
     stiffness, damping = contents.quantity("bristle_stiffness"), contents.quantity("bristle_damping")
     if stiffness == 0.0:

@@ -217,7 +217,7 @@ def schema(name: str) -> pyarrow.Schema:
 
 
 def require_parquet() -> None:
-    """InputError with what to install where Parquet cannot be written."""
+    """Raise InputError with what to install where Parquet cannot be written."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:

@@ -160,7 +160,7 @@ def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()
 
 
 def refuse_unmoved(recording: Recording, actuator: Actuator) -> None:
-    """InputError where the shaft does not move or the recording is too short to identify anything."""
+    """Raise InputError where the shaft does not move or the recording is too short to identify anything."""
     noise = noise_of(recording.time, recording.measured)
     middle, unit = np.percentile(recording.measured, [1.0, 99.0]), actuator.shown(recording.unit)
     if recording.time.size < 100 or middle[1] - middle[0] < 20.0 * noise or np.ptp(recording.measured) == 0.0:

@@ -13,8 +13,10 @@ from std_srvs.srv import SetBool
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.control import Controller, Setpoints, Settings, read_setpoint_file
 from pierburg_ros.errors import InputError
-from pierburg_ros.nodes.controller_outputs import Outputs
+from pierburg_ros.nodes.controller_commands import JointCommands
+from pierburg_ros.nodes.controller_outputs import TOPICS, Outputs
 from pierburg_ros.nodes.controller_place import Place
+from pierburg_ros.nodes.core.commanded_duty import CommandedDuty
 from pierburg_ros.nodes.core.controller_parameters import CONTROLLER, LAW, PROTECTION, WINDING
 from pierburg_ros.nodes.core.guarded_controller import GuardedController
 from pierburg_ros.nodes.core.sampled_controller import SampledController
@@ -35,6 +37,8 @@ FAULT_PERIOD = 0.01
 class ControllerNode(ManagedNode):
     """Answers Hall samples with duties; a lost angle is answered with duty 0, or as `on_fault` says."""
 
+    later = TOPICS
+
     def __init__(self) -> None:
         super().__init__("controller")
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -43,14 +47,18 @@ class ControllerNode(ManagedNode):
         self._place = Place(self, time.monotonic())
         self._watchdog = self.create_timer(3600.0, self._on_silence, clock=steady)
         self._watchdog.cancel()
-        self.declare(LAW)
-        self.declare((*CONTROLLER, *PROTECTION, *WINDING))
+        self.declare((*LAW, *CONTROLLER, *PROTECTION, *WINDING))
         self.guarded = self._prepared()
         self._reports = ControllerReports(self.diagnostics, self.guarded)
         self._sample_clock = SampleClock(self)
         self._hall_voltage = Signal(self, Float64, "hall_voltage", self._on_hall_voltage)
+        self._applied_duty = Signal(self, Float64, "applied_duty", lambda message: self.guarded.applied(message.data))
         self._silent_since: float | None = None
-        self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
+        if self.guarded.loop.forwarded is None:
+            self.create_subscription(Float64, "setpoints", self._on_setpoint, COMMANDS)
+            self._joint_commands = JointCommands(self, "position", self._take_setpoint)
+        else:
+            self._joint_commands = JointCommands(self, "duty", self._take_duty)
         self.create_service(SetBool, "~/enable", self._on_enable)
         self.create_timer(STATUS_PERIOD, self._look, clock=steady)
         self.open_parameters()
@@ -59,13 +67,11 @@ class ControllerNode(ManagedNode):
         """Put settings in force without a jump of the duty; a setpoint counts like one from the topic."""
         settings = self._settings({**self.values, **changes})
         if self.guarded is None:
-            setpoint = changes.get("setpoint", settings.angle_closed)
-            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(setpoint)
+            Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed).accepted(changes["setpoint"])
             return
         loop = self.guarded.loop
         if "setpoint" in changes:
-            loop.setpoints.offer(changes["setpoint"])
-            self._publish_setpoint()
+            self._take_setpoint(changes["setpoint"])
         if settings != loop.controller.settings:
             loop.controller.change(settings)
             loop.setpoints.lower_stop = settings.angle_closed
@@ -109,6 +115,8 @@ class ControllerNode(ManagedNode):
         loop.setpoints.offer(self.values["setpoint"])
         if self.values["setpoint_file"]:
             loop.schedule = read_setpoint_file(self.values["setpoint_file"])
+        if self.values["command"] == "duty":
+            loop.forwarded = CommandedDuty()
         return GuardedController(loop, actuator, self.values)
 
     def _settings(self, changes: Mapping[str, Any]) -> Settings:
@@ -166,10 +174,21 @@ class ControllerNode(ManagedNode):
 
     def _on_setpoint(self, message: Float64) -> None:
         try:
-            self.guarded.loop.setpoints.offer(message.data)
+            self._take_setpoint(message.data)
         except InputError as error:
             self.diagnostics.refuse(str(error))
+            self._publish_setpoint()
+
+    def _take_setpoint(self, setpoint: float) -> None:
+        """Put a setpoint [rad] in force; InputError where there can be none."""
+        if self.guarded.loop.forwarded is not None:
+            raise InputError("The controller has command duty: it forwards the effort of joint_commands.")
+        self.guarded.loop.setpoints.offer(setpoint)
         self._publish_setpoint()
+
+    def _take_duty(self, duty: float) -> None:
+        """Forward a duty [1] with the next sample; InputError where it is not finite."""
+        self._reports.forwarded(duty, self.guarded.loop.forwarded.offer(duty))
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self.guarded.loop.controller.enable(request.data)
@@ -195,7 +214,7 @@ class ControllerNode(ManagedNode):
             self.outputs = None
 
     def _publish_setpoint(self) -> None:
-        if self.outputs is not None:
+        if self.outputs is not None and self.guarded.loop.forwarded is None:
             self.outputs.setpoint(self.guarded.loop.setpoints.active)
 
 

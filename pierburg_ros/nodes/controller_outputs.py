@@ -12,6 +12,8 @@ from pierburg_ros.nodes.graph.qos import PUBLISHED
 
 INTERNALS = {"error": Float64, "pi_output": Float64, "derivative": Float64, "saturated": Bool}
 """What `publish_internals` publishes: the internals of the control law and their message types."""
+TOPICS = ("duty", "active_setpoint", *(f"~/{name}" for name in INTERNALS))
+"""What is published while the controller is active."""
 
 
 class Outputs:

@@ -18,6 +18,7 @@ from pierburg_ros.monitoring.evidence import decoded
 from pierburg_ros.monitoring.findings import Finding
 from pierburg_ros.monitoring.monitor import Monitor
 from pierburg_ros.monitoring.pairing import Angle, Pairing
+from pierburg_ros.nodes.core.joint import joint_name
 from pierburg_ros.nodes.core.monitor_parameters import MONITOR
 from pierburg_ros.nodes.graph import messages
 from pierburg_ros.nodes.graph.diagnostics import ERROR, WARN
@@ -55,7 +56,9 @@ class MonitorNode(LiveNode):
         self._duties = Drained(self, Float64, values["duty_topic"], group)
         self._supplies = Drained(self, Float64, "supply_voltage", group)
         self._split = self.create_client(Trigger, f"{values['recorder']}/split") if values["recorder"] else None
-        self._split_at, self._heard, self._recording = -SPLITS_APART, time.monotonic(), ""
+        self._joint = joint_name(values["joint"], self.get_namespace())
+        self._split_at, self._recording, self._strangers = -SPLITS_APART, "", ""
+        self._heard = dict.fromkeys((values["angle_topic"], values["duty_topic"]), time.monotonic())
         self.samples = 0
         self.create_timer(PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.open_parameters()
@@ -77,9 +80,9 @@ class MonitorNode(LiveNode):
 
     def _look(self) -> None:
         for message, info in self._angles.taken():
-            self._heard = time.monotonic()
             self._angle(message, info["source_timestamp"], info["publication_sequence_number"])
         for message, info in self._duties.taken():
+            self._heard[self.values["duty_topic"]] = time.monotonic()
             self._pairing.duty(info["source_timestamp"], info["publication_sequence_number"], message.data)
         for message, info in self._supplies.taken():
             self._pairing.supply(info["source_timestamp"], message.data)
@@ -90,21 +93,28 @@ class MonitorNode(LiveNode):
             self._report(change.finding, change.begins)
 
     def _of_joint(self, message: JointState, sent: int, number: int) -> None:
-        joint = self.values["joint"]
-        if joint in message.name and len(message.position) == len(message.name):
-            angle = message.position[message.name.index(joint)]
-            self._pairing.angle(Angle(messages.nanoseconds(message.header.stamp), sent, number, angle))
+        if self._joint not in message.name or len(message.position) != len(message.name):
+            self._strangers = ", ".join(message.name)
+            return
+        angle = message.position[message.name.index(self._joint)]
+        self._of_sample(Angle(messages.nanoseconds(message.header.stamp), sent, number, angle))
 
     def _of_voltage(self, message: Float64, sent: int, number: int) -> None:
         angle = decoded(self._model.actuator, np.float64(message.data))
-        self._pairing.angle(Angle(sent, sent, number, float(angle)))
+        self._of_sample(Angle(sent, sent, number, float(angle)))
+
+    def _of_sample(self, angle: Angle) -> None:
+        self._heard[self.values["angle_topic"]], self._strangers = time.monotonic(), ""
+        self._pairing.angle(angle)
 
     def _report_silence(self) -> None:
-        topic = self.values["angle_topic"]
-        if time.monotonic() - self._heard > SILENCE:
-            self.diagnostics.begin("silence", WARN, f"no samples on {topic} for {SILENCE:g} s: nothing is watched")
-        else:
+        silent = " and ".join(topic for topic, at in self._heard.items() if time.monotonic() - at > SILENCE)
+        if not silent:
             self.diagnostics.end("silence")
+            return
+        found = f" (found {self._strangers}, expected {self._joint})" if self._strangers else ""
+        text = f"no samples on {silent} for {SILENCE:g} s{found}: nothing is watched"
+        self.diagnostics.begin("silence", WARN, text)
 
     def _report(self, finding: Finding, begins: bool) -> None:
         condition = " ".join((finding.kind, *finding.names))

@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.controller_parameters import WINDING
+from pierburg_ros.nodes.core.joint import joint_name
 from pierburg_ros.nodes.core.pacing import Pacer
 from pierburg_ros.nodes.core.physics import Physics, chosen_model
 from pierburg_ros.nodes.core.plant_parameters import PLANT
@@ -45,7 +46,7 @@ class PlantNode(LiveNode):
         self.pacer = Pacer(0.0)
         self._thread = ThreadPoolExecutor(1, "ticks")
         self.plant: SampledPlant | None = None
-        self.declare((*PLANT, *WINDING))
+        self.declare((*PLANT, *WINDING), more=True)
         self.plant = self._sampled_plant()
         self._reports = PlantReports(self)
         self._heat = HeatReport(self.diagnostics, self.plant.winding)
@@ -55,7 +56,7 @@ class PlantNode(LiveNode):
         self.held_back = HeldBack(self, self.diagnostics, self.stopping) if self.is_time_source else None
         self._hall_publisher = self.create_publisher(Float64, "hall_voltage", PUBLISHED)
         self._duty_publisher = self.create_publisher(Float64, "applied_duty", PUBLISHED)
-        self._joint = messages.joint_name(self.get_namespace())
+        self._joint = joint_name(self.values["joint"], self.get_namespace())
         self._joint_publisher = self.create_publisher(JointState, "joint_states", PUBLISHED)
         self._duty = Signal(self, Float64, "duty", self._on_duty)
         self.create_service(Trigger, "~/reset", self._on_reset)
@@ -65,6 +66,11 @@ class PlantNode(LiveNode):
     def is_time_source(self) -> bool:
         """Whether this node makes the time of the graph."""
         return bool(self.values["simulated_time"] or self.values["lockstep"])
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether time is simulated, by this node or by another."""
+        return self.is_time_source or super().is_simulated
 
     def accept(self, changes: Mapping[str, Any]) -> None:
         """Put parameters in force between two ticks."""
@@ -88,10 +94,10 @@ class PlantNode(LiveNode):
         return int(self.get_clock().now().nanoseconds)
 
     def follows(self, time: int) -> bool:
-        """Whether `time` [ns] lies after the last tick; a clock set back counts from where it is."""
+        """Whether `time` [ns] lies after the last tick, 0 being none; a clock set back counts from where it is."""
         if self.plant.last is not None and time < self.plant.last:
             self.plant.last = time
-        return self.plant.last is None or time > self.plant.last
+        return time > (self.plant.last or 0)
 
     def tick(self, time: int) -> Sample:
         """One tick at `time` [ns]."""

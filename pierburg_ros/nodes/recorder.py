@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from datetime import datetime
@@ -30,6 +31,10 @@ HORIZON = 0.1
 """Time for which messages are held back to be written in the order of their sending [s]."""
 WRITE_PERIOD = 0.05
 """Time between two writings [s]."""
+AT_THE_START = 5_000_000_000
+"""Time [ns] for which messages wait for the first `/clock`, which may be read after what was sent behind it."""
+PATIENCE = 5.0
+"""Longest wait [s] for what was sent before a file is to end: a publisher that was killed is waited for in vain."""
 LOOK_PERIOD = 0.5
 """Time between two looks at the graph [s]."""
 
@@ -43,14 +48,13 @@ class RecorderNode(LiveNode):
         self.topics: RecordedTopics | None = None
         self.declare(RECORDER)
         self._order: SourceOrder[Received] = SourceOrder(HORIZON)
-        is_simulated = bool(self.get_parameter("use_sim_time").value)
         self._values_topic = Topic(f"{self.get_fully_qualified_name()}/parameters", type_name(String))
         self._parameter_values = ParameterValues(self, self.values["parameters_of"], self._take_values)
         series = RecordingSeries(self.values["output"], self.values["form"] == "rosbag2", datetime.now())
         self.writer = RecordingWriter(series)
-        self._begin()
-        self.topics = RecordedTopics(self, dict.fromkeys([*self.values["topics"], *([CLOCK] if is_simulated else [])]))
-        self._time = RecordedTime(self, is_simulated)
+        clock = [CLOCK] if self.is_simulated else []
+        self.topics = RecordedTopics(self, dict.fromkeys([*self.values["topics"], *clock]))
+        self._time = RecordedTime(self, self.is_simulated)
         self._receiver = Receiver(self.topics)
         self.create_service(SetBool, "~/record", self._on_record)
         self.create_service(Trigger, "~/split", self._on_split)
@@ -62,7 +66,7 @@ class RecorderNode(LiveNode):
     def counters(self) -> Mapping[str, object]:
         """What is recorded where, and what was lost, in all and by topic."""
         file = self.writer.file if self.writer else None
-        losses = self.topics.losses() if self.topics else {}
+        losses = self._losses()
         return {
             "file": str(file.path) if file else "not recording",
             "messages": file.messages if file else 0,
@@ -71,10 +75,15 @@ class RecorderNode(LiveNode):
             "unwritten_messages": self.writer.unwritten if self.writer else 0,
         }
 
+    def begin(self) -> None:
+        """Open the first file, now that no signal interrupts what completes it."""
+        self._begin()
+
     def close(self) -> None:
         """Write what has arrived and complete the file; InputError where the disk does not take it."""
         self._receiver.stop()
         self._time.leave()
+        self._drain()
         summary = self._end() if self.writer.file is not None else ""
         if self.writer.problem:
             raise InputError(self.writer.problem)
@@ -83,34 +92,46 @@ class RecorderNode(LiveNode):
 
     def _begin(self) -> None:
         """Go on in a new file; InputError, and the old one goes on, where there can be none."""
-        self.writer.begin(self.topics.losses() if self.topics else {})
-        if self.topics:
-            self.topics.count_anew()
+        self.writer.begin()
         self._parameter_values.want()
         self.diagnostics.end("write")
         self.diagnostics.end("lost")
         self.get_logger().info(f"recording {self.writer.file.path}")
 
     def _end(self) -> str:
-        """Write what has arrived, complete the file and say what is in it."""
-        self._drain()
-        file, losses = self.writer.file, self.topics.losses()
-        if file is not None:
-            self.writer.end(losses)
+        """Complete the file and say what is in it."""
+        file = self.writer.file
+        self.writer.end()
         if self.writer.problem:
             return self.writer.problem
-        return f"{file.path}: {file.messages} messages, {sum(lost for lost, _ in losses.values())} lost"
+        return f"{file.path}: {file.messages} messages, {sum(lost for lost, _ in file.losses.values())} lost"
 
-    def _drain(self) -> None:
+    def _drain(self, until: float = math.inf) -> None:
+        """Write what has arrived and was sent up to a time [ns]."""
         self._receiver.turn()
         self._take()
-        self._write(self._order.rest())
+        self._write(self._order.until(until))
 
-    def _take(self) -> None:
+    def _catch_up(self) -> str:
+        """Write what was sent before this call, waiting for what is on the way; what is to be said of the rest."""
+        called, end = time.time_ns(), time.monotonic() + PATIENCE
+        came, behind = True, list[str]()
+        while (came or behind) and time.monotonic() < end and not self.stopping.wait(WRITE_PERIOD):
+            came, behind = self._take() <= called, self.topics.behind(called)
+            self._time.tell()
+        self._drain(called)
+        late = ", ".join(sorted(behind))
+        return f"; nothing newer came on {late}: what is on the way goes into the next file" if behind else ""
+
+    def _take(self) -> float:
+        """Put what has come in order; when the earliest of it was sent [ns]."""
+        earliest = math.inf
         for received in self._receiver.received():
             sent = min(received.sent, received.arrived)
             self._time.take(received, sent)
             self._order.put(sent, received, received.taken)
+            earliest = min(earliest, sent)
+        return earliest
 
     def _take_values(self, text: str) -> None:
         now = time.time_ns()
@@ -123,8 +144,16 @@ class RecorderNode(LiveNode):
         if self.writer.is_due_again():
             self._try_again()
 
+    def _losses(self) -> dict[str, tuple[int, int]]:
+        file = self.writer.file if self.writer else None
+        return file.losses if file else {}
+
     def _report(self) -> None:
-        losses = {name: lost for name, (lost, _) in self.topics.losses().items() if lost}
+        losses = {name: lost for name, (lost, _) in self._losses().items() if lost}
+        if self._time.waits:
+            self.diagnostics.begin("clock", WARN, "waiting for /clock, since use_sim_time is set: nothing is recorded")
+        else:
+            self.diagnostics.end("clock")
         if losses:
             text = ", ".join(f"{name} {lost}" for name, lost in sorted(losses.items()))
             self.diagnostics.begin("lost", WARN, f"messages lost on the way to the recorder: {text}")
@@ -137,20 +166,25 @@ class RecorderNode(LiveNode):
 
     def _write_due(self) -> None:
         self._take()
-        self._write(self._order.due(time.time_ns()))
+        first_clock = AT_THE_START if self._time.waits else 0
+        self._write(self._order.due(time.time_ns() - first_clock))
         self._time.tell()
 
     def _write(self, received: list[Received]) -> None:
-        timed = [(each, *self._time.of(each)) for each in received]
-        if not self.writer.write(timed, self.values["flush_interval"]):
-            self.diagnostics.begin("write", ERROR, self.writer.problem)
+        for number, timed in enumerate(self._time.parts(received)):
+            if number and self.writer.file is not None:
+                self._try_again()
+            if not self.writer.write(timed, self.values["flush_interval"]):
+                self.diagnostics.begin("write", ERROR, self.writer.problem)
 
     def _on_record(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
             if request.data and self.writer.file is None:
+                self._drain()
                 self._begin()
             elif not request.data and self.writer.file is not None:
-                response.message = self._end()
+                rest = self._catch_up()
+                response.message = (self._end() if self.writer.file is not None else self.writer.problem) + rest
             response.success = not self.writer.problem
             response.message = response.message or str(self.counters()["file"])
             if not request.data:
@@ -169,9 +203,9 @@ class RecorderNode(LiveNode):
             response.success, response.message = False, self.writer.problem or "not recording"
             return response
         try:
-            self._drain()
+            rest = self._catch_up()
             self._begin()
-            response.success, response.message = True, str(self.writer.file.path)
+            response.success, response.message = True, f"{self.writer.file.path}{rest}"
         except InputError as error:
             response.success, response.message = False, str(error)
         return response

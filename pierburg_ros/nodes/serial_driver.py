@@ -12,6 +12,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.nodes.core.joint import joint_name
 from pierburg_ros.nodes.core.serial_driver_parameters import SERIAL_DRIVER
 from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 from pierburg_ros.nodes.graph import messages
@@ -42,6 +43,7 @@ class SerialDriverNode(LiveNode):
         self._thread = ThreadPoolExecutor(1, "line")
         self.declare(SERIAL_DRIVER)
         values = self.values
+        self._joint = joint_name(values["joint"], self.get_namespace())
         self._sensor = ShaftSensor(read_actuator(values["actuator"]), values["velocity_time_constant"])
         self._hall = self.create_publisher(Float64, "hall_voltage", PUBLISHED)
         self._applied = self.create_publisher(Float64, "applied_duty", PUBLISHED)
@@ -114,7 +116,7 @@ class SerialDriverNode(LiveNode):
         angle, velocity = self._sensor.take(state.hall_voltage, elapsed)
         self._hall.publish(messages.number(state.hall_voltage))
         self._applied.publish(messages.number(state.duty))
-        self._joints.publish(messages.joint_state(self.values["joint"], received.time, angle, velocity))
+        self._joints.publish(messages.joint_state(self._joint, received.time, angle, velocity))
         if math.isfinite(state.supply_voltage):
             self._supply.publish(messages.number(state.supply_voltage))
         if last is None or last.state.enabled != state.enabled:

@@ -78,8 +78,8 @@ def settings(trial: Trial, path: Path, model: Path, setpoints: Path, holdout: bo
     recorder = {
         "use_sim_time": True,
         "output": path,
-        "topics": "[hall_voltage,applied_duty,joint_states]",
-        "parameters_of": "[nobody]",
+        "topics": ["hall_voltage", "applied_duty", "joint_states"],
+        "parameters_of": ["nobody"],
     }
     return {"recorder": recorder, "controller": controller, "plant": plant}
 

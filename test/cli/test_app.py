@@ -44,11 +44,6 @@ def test_help_imports_neither_compiler_nor_libraries():
     assert shown.splitlines()[-1] == "[]"
 
 
-def test_every_listed_command_is_an_executable_of_its_own():
-    for name in app.COMMANDS:
-        assert name == "run" or callable(getattr(app, name))
-
-
 def test_an_input_error_is_one_line_and_status_2(command, capsys):
     def tune() -> None:
         raise InputError("found a cat,\n  expected a dog. Bring a dog.")

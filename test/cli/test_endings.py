@@ -31,6 +31,17 @@ def tune() -> None:
             os.replace = lambda *paths: (moved(*paths), os.kill(os.getpid(), 9))
         elif sys.argv[2] == "waits":
             time.sleep(600)
+        elif sys.argv[2] == "swallows":
+            try:
+                time.sleep(600)
+            except BaseException:
+                pass
+            time.sleep(600)
+        elif sys.argv[2] == "fails of its own":
+            try:
+                time.sleep(600)
+            except BaseException:
+                raise RuntimeError("no compiled object yet") from None
 
 app.import_module = lambda name: SimpleNamespace(tune=tune)
 app.main(["tune"])
@@ -44,9 +55,9 @@ def start(output: Path, how: str = "ends", size: int = 1) -> subprocess.Popen:
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def waiting(output: Path) -> subprocess.Popen:
+def waiting(output: Path, how: str = "waits") -> subprocess.Popen:
     """A run into `output` that has half of its results and goes on."""
-    process = start(output, "waits")
+    process = start(output, how)
     assert process.stdout.readline() == "ready\n"
     return process
 
@@ -69,6 +80,14 @@ def test_a_signal_ends_a_run_with_one_line_and_nothing_left(tmp_path, sent, stat
     run = waiting(tmp_path / "deep" / "out")
     run.send_signal(sent)
     assert ended(run) == (status, f"pierburg: {said}.\n")
+    assert left(tmp_path) == []
+
+
+@pytest.mark.parametrize("how", ["swallows", "fails of its own"])
+def test_a_signal_that_a_callback_swallowed_ends_the_run_all_the_same(tmp_path, how):
+    run = waiting(tmp_path / "out", how)
+    run.send_signal(signal.SIGINT)
+    assert ended(run) == (130, "pierburg: interrupted.\n")
     assert left(tmp_path) == []
 
 

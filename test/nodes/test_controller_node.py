@@ -94,7 +94,7 @@ def test_gains_are_live_and_checked_together(controller):
 
 def test_without_hall_samples_it_sends_zero_and_says_so(controller):
     controller.set("controller", setpoint=1.0)
-    assert max(answered(controller, 0.42) for _ in range(10)) > 0.0
+    assert max(answered(controller, 0.42 + 0.01 * step) for step in range(10)) > 0.0
     controller.set("controller", hall_timeout=0.05)
     controller.until(lambda: reported(controller, "no Hall sample for 0.05 s"), "the error")
     controller.until(lambda: controller.duty[-1].data == 0.0, "duty 0")

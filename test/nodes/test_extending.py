@@ -24,12 +24,12 @@ def with_node(tmp_path: Path) -> Path:
     core, shell = blocks("node.md")
     (package / "nodes/core/travel.py").write_text(core)
     (package / "nodes/travel.py").write_text(shell)
-    run = package / "cli/run.py"
+    starting = package / "starting.py"
     text, places = re.subn(
-        r"^NODES = \(([^)]*[^,\s]),?\s*\)$", r'NODES = (\1, "travel")', run.read_text(), flags=re.MULTILINE
+        r"^NODES = \(([^)]*[^,\s]),?\s*\)$", r'NODES = (\1, "travel")', starting.read_text(), flags=re.MULTILINE
     )
     assert places == 1
-    run.write_text(text)
+    starting.write_text(text)
     return root
 
 

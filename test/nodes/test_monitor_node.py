@@ -14,16 +14,14 @@ from pierburg_ros.nodes.monitor import watched_model
 pytestmark = pytest.mark.ros
 
 
-def statuses(graph):
+def statuses(graph, name="monitor"):
     """What the monitor has said so far."""
-    return [
-        status for message in graph.received["/diagnostics"] for status in message.status if status.name == "monitor"
-    ]
+    return [status for message in graph.received["/diagnostics"] for status in message.status if status.name == name]
 
 
-def value(graph, key):
+def value(graph, key, name="monitor"):
     """A counter of the monitor as it was last reported."""
-    values = [{pair.key: pair.value for pair in status.values} for status in statuses(graph)]
+    values = [{pair.key: pair.value for pair in status.values} for status in statuses(graph, name)]
     return int(values[-1].get(key, 0)) if values else 0
 
 
@@ -64,6 +62,26 @@ def test_silence_is_said(graph):
     graph.watch("/diagnostics", DiagnosticArray)
     graph.start("monitor")
     graph.until(lambda: any("no samples on joint_states" in s.message for s in statuses(graph)), "a warning")
+
+
+def test_samples_of_another_joint_are_named_in_a_warning_that_stays(graph):
+    graph.watch("/diagnostics", DiagnosticArray)
+    graph.start("monitor", "joint:=elbow")
+    graph.start("plant", "rate:=100.0")
+    text = "no samples on joint_states for 2 s (found swirl_shaft, expected elbow): nothing is watched"
+    graph.until(lambda: any(text in s.message for s in statuses(graph)), "a warning")
+    reports = len(statuses(graph))
+    graph.until(lambda: len(statuses(graph)) > reports + 3, "more reports")
+    assert all(text in s.message and s.level == b"\x01" for s in statuses(graph)[reports:])
+
+
+def test_plant_and_monitor_of_a_namespace_speak_of_the_same_joint(graph):
+    graph.watch("/diagnostics", DiagnosticArray)
+    graph.start("monitor", arguments=("-r", "__ns:=/left"))
+    graph.start("plant", "rate:=100.0", arguments=("-r", "__ns:=/left"))
+    graph.start("controller", arguments=("-r", "__ns:=/left"))
+    graph.until(lambda: value(graph, "samples", "left/monitor") > 100, "samples")
+    graph.until(lambda: "no samples" not in statuses(graph, "left/monitor")[-1].message, "no warning")
 
 
 def test_duty_and_hall_voltage_alone_are_followed(graph):

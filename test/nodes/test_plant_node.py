@@ -156,10 +156,11 @@ def test_values_of_a_parameter_file_are_checked_too(graph):
     file.write_text(
         "plant:\n  ros__parameters:\n    armature_resistance: 5\n    gear_ratio: -3.0\n    rate: 200\n    nonsense: 1\n"
     )
-    diagnostics = graph.watch("/diagnostics", DiagnosticArray)
-    graph.start("plant", arguments=("--params-file", str(file)))
-    assert graph.get("plant", "armature_resistance", "gear_ratio", "rate") == [5.0, 37.3, 200.0]
-    graph.until(lambda: any("nonsense" in text for _, text in complaints(diagnostics)), "a report")
+    status, output = graph.ended(graph.start("plant", arguments=("--params-file", str(file))), by=None)
+    assert status == 2
+    ratio, unknown = output.splitlines()[-2:]
+    assert ratio.startswith("gear_ratio is -3; expected ")
+    assert unknown.startswith("plant has no parameter 'nonsense'")
 
 
 @pytest.mark.parametrize(

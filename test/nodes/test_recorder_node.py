@@ -58,6 +58,7 @@ def recorder(graph, *parameters):
     process = graph.start("recorder", *parameters)
     graph.publisher = graph.node.create_publisher(Float64, "duty", 1000)
     graph.until(lambda: graph.publisher.get_subscription_count() > 0, "the recorder")
+    graph.until(lambda: any(graph.folder.rglob("*.mcap")), "its file")
     return process
 
 

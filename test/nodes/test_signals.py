@@ -1,5 +1,7 @@
 """Signals are read from whoever sends them, and their quality of service can be overridden."""
 
+import sys
+
 import pytest
 
 pytest.importorskip("rclpy")
@@ -49,6 +51,42 @@ def test_overrides_hold_and_one_for_a_topic_that_does_not_exist_is_named(graph):
     )
     topic = "/recorder/set_parameter"
     graph.until(lambda: reliabilities(graph, topic) == [ReliabilityPolicy.BEST_EFFORT], "the override")
+    graph.until((graph.folder / "run.mcap").exists, "its file, after all that is said about parameters")
     _, output = graph.ended(process)
     assert "recorder has no topic /nowhere for qos_overrides" in output
     assert "no topic /recorder/set_parameter" not in output
+
+
+def test_overrides_hold_for_what_the_controller_publishes_once_it_is_active(graph):
+    given = "qos_overrides./duty.publisher.reliability:=best_effort"
+    process = graph.start("controller", given, "qos_overrides./controller/error.publisher.depth:=7")
+    offered = lambda: [each.qos_profile.reliability for each in graph.node.get_publishers_info_by_topic("/duty")]  # noqa: E731
+    graph.until(lambda: offered() == [ReliabilityPolicy.BEST_EFFORT], "the override")
+    _, output = graph.ended(process)
+    assert "qos_overrides" not in output
+
+
+DEPTHS = """
+import sys
+import rclpy
+from pierburg_ros.nodes.plant import PlantNode
+rclpy.init(args=sys.argv)
+node = PlantNode()
+print({each.topic_name: each.qos_profile.depth for each in node.publishers if each.topic_name == "/hall_voltage"})
+"""
+
+
+@pytest.mark.parametrize(
+    ("parameters", "depth"),
+    [
+        ((), 5),
+        (("depth:=70",), 70),
+        (("depth:=70", "qos_overrides./hall_voltage.publisher.depth:=8"), 8),
+        (("simulated_time:=true",), 10_000),
+        (("use_sim_time:=true",), 10_000),
+    ],
+)
+def test_publishers_keep_as_much_as_of_any_sensor_unless_told_otherwise_or_time_is_simulated(graph, parameters, depth):
+    given = [word for parameter in parameters for word in ("-p", parameter)]
+    status, output = graph.ended(graph.run([sys.executable, "-c", DEPTHS, "--ros-args", *given]), by=None)
+    assert status == 0 and f"{{'/hall_voltage': {depth}}}" in output, output

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 from unittest import mock
+
+import yaml
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = ROOT / "launch" / "closed_loop.launch.py"
@@ -26,13 +29,19 @@ class Substitution:
 
 def stubs() -> dict[str, ModuleType]:
     """Stand-ins for the modules that the launch file imports; their actions keep what they are given."""
-    names = ("launch", "launch.actions", "launch.event_handlers", "launch.substitutions")
+    own = ("actions", "event_handlers", "substitutions", "launch_description_sources")
+    names = ("launch", *(f"launch.{each}" for each in own))
     of_ros = ("launch_ros", "launch_ros.actions", "launch_ros.substitutions")
     modules = {name: ModuleType(name) for name in (*names, *of_ros)}
     modules["launch"].LaunchDescription = list
     modules["launch.actions"].DeclareLaunchArgument = lambda name, **said: SimpleNamespace(name=name, said=said)
     modules["launch.actions"].OpaqueFunction = lambda function: SimpleNamespace(function=function)
     modules["launch.actions"].ExecuteProcess = dict
+    modules["launch.actions"].Shutdown = SimpleNamespace
+    modules["launch.actions"].SetEnvironmentVariable = lambda name, value: SimpleNamespace(name=name, said={})
+    modules["launch.actions"].IncludeLaunchDescription = lambda file, launch_arguments: (file, dict(launch_arguments))
+    modules["launch.launch_description_sources"].PythonLaunchDescriptionSource = Path
+    modules["launch.substitutions"].EnvironmentVariable = lambda name, default_value: default_value
     modules["launch.actions"].RegisterEventHandler = lambda handler: handler
     modules["launch.event_handlers"].OnProcessExit = SimpleNamespace
     modules["launch.substitutions"].LaunchConfiguration = Substitution
@@ -54,16 +63,15 @@ def launched(file: Path = LAUNCH, **given: str) -> tuple[dict[str, dict[str, Any
     return arguments, opaque.function({**context, "pierburg_ros": str(ROOT)})
 
 
-def command_line(node: dict[str, Any], folder: Path) -> list[str]:
-    """The ROS arguments with which `launch_ros` starts a node: its names, then a file for each set of parameters."""
-    file, values = node["parameters"]
-    own = folder / f"{node['namespace']}_{node['name']}.yaml"
-    lines = [f"    {name}: {literal(value)}" for name, value in values.items()]
-    own.write_text("/**:\n  ros__parameters:\n" + "\n".join(lines) + "\n")
+def given_to(node: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
+    """The parameter files that a node is given, and the values by name, as ROS reads them."""
+    given = list(pairwise(node["ros_arguments"]))
+    files = [value for option, value in given if option == "--params-file"]
+    rules = [value.split(":=", 1) for option, value in given if option == "-p"]
+    return files, {name: yaml.safe_load(text) for name, text in rules}
+
+
+def command_line(node: dict[str, Any]) -> list[str]:
+    """The ROS arguments with which `launch_ros` starts a node."""
     names = ["-r", f"__node:={node['name']}", "-r", f"__ns:=/{node['namespace']}"]
-    return ["--ros-args", *node["ros_arguments"], *names, "--params-file", file, "--params-file", str(own)]
-
-
-def literal(value: object) -> str:
-    """A value as YAML."""
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+    return ["--ros-args", *node["ros_arguments"], *names]

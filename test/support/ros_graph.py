@@ -52,8 +52,9 @@ class Graph:
         self._subscriptions: list[Any] = []
 
     def start(self, name: str, *parameters: str, arguments: tuple[str, ...] = ()) -> subprocess.Popen[str]:
-        """Start a node with parameters such as `rate:=200.0`."""
-        given = [word for parameter in parameters for word in ("-p", parameter)]
+        """Start a node with parameters such as `rate:=200.0`; what it publishes is kept for an observer held up."""
+        kept = [f"depth:={KEPT}"] if name in ("plant", "controller", "serial_driver") else []
+        given = [word for parameter in (*kept, *parameters) for word in ("-p", parameter)]
         code = f"from pierburg_ros.nodes.{name} import main; main()"
         command = [sys.executable, "-c", code, "--ros-args", *given, *arguments]
         return self.run(command)

@@ -18,25 +18,47 @@ SIGNALS = {INTERRUPTED: "interrupted", TERMINATED: "terminated"}
 """Exit statuses of a run that a signal has ended, as shells count them, and the line that says so."""
 
 
+AGAIN = 0.5
+"""Time [s] after which a signal that was not heard is raised again, within the 2 s in which a command has to end."""
+
+
 class Terminated(BaseException):
     """SIGTERM has come: everything that is open is closed and cleared on the way out, as after Ctrl-C."""
 
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM end the block as an exception does; its default would leave what is half done."""
+    """Let SIGINT and SIGTERM end the block as an exception does, so that nothing is left half done.
+
+    What a signal raises is raised again every `AGAIN` until it is heard: the compiler's callbacks swallow what is
+    raised within them, or end in an error of their own.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    told: BaseException | None = None
 
-    def end(*_: object) -> None:
-        raise Terminated
+    def end(number: int, _: object) -> None:
+        nonlocal told
+        told = told or (KeyboardInterrupt() if number == signal.SIGINT else Terminated())
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        if sys.exc_info()[1] is not told:  # it is not on its way out
+            raise told
 
-    before = signal.signal(signal.SIGTERM, end)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, end)
     try:
         yield
+    except Exception:
+        if told is None:
+            raise
+        raise told from None
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def refuse(reason: str) -> NoReturn:

@@ -87,6 +87,6 @@ def text(document: Any) -> str:
 
 
 def refuse_folder(path: Path | None) -> None:
-    """InputError where a document cannot become a file, before the work."""
+    """Raise InputError where a document cannot become a file, before the work."""
     if path is not None and path.is_dir():
         raise InputError(f"{path} is a folder, expected a file for the result document. Add a name.")

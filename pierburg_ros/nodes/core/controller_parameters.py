@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pierburg_ros.control import SETTINGS
+from pierburg_ros.nodes.core.depth import DEPTH
+from pierburg_ros.nodes.core.joint import JOINT
+from pierburg_ros.nodes.core.joint_command import ARRAYS
 from pierburg_ros.nodes.core.protection.fallback import CHOICES
 from pierburg_ros.parameter import Parameter as Declaration
 
 CONTROLLER = (
+    DEPTH,
     Declaration(
         "actuator",
         "pierburg",
@@ -18,6 +22,18 @@ CONTROLLER = (
         "autostart", True, "be active at once; otherwise wait for the transitions of a managed node", fixed=True
     ),
     Declaration("exclusive", True, "send no duty while another node does; take over when it is gone"),
+    Declaration("joint", "", JOINT, fixed=True),
+    Declaration(
+        "command",
+        "position",
+        "what joint_commands asks for: a position [rad] that the control law follows, or by effort a duty [1] in the"
+        " place of the law's",
+        fixed=True,
+        choices=tuple(ARRAYS),
+    ),
+    Declaration(
+        "command_timeout", 0.05, "with command duty: time without joint_commands after which it is 0", "s", 0.0, 3600.0
+    ),
     Declaration("setpoint", 0.0, "wanted shaft angle, as if sent on the topic setpoints", "rad", -100.0, 100.0),
     Declaration(
         "setpoint_file",

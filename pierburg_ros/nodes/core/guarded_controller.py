@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.nodes.core.protection.contradiction import Contradiction
 from pierburg_ros.nodes.core.protection.fallback import Fallback
 from pierburg_ros.nodes.core.protection.frozen import Ends, Frozen
 from pierburg_ros.nodes.core.protection.limits import limits_of
@@ -17,6 +19,8 @@ from pierburg_ros.nodes.core.shaft_sensor import ShaftSensor
 
 RETURN = 5
 """Good samples in a row after which an angle that bad ones had taken away counts as known again."""
+TOLD = 10
+"""Samples for which the last word of the actuator on its duty holds: as many as wait for a reader."""
 SPEED_FILTER = 0.01
 """Time constant [s] of the speed from which the current is estimated, as in the plant's `joint_states`."""
 
@@ -49,9 +53,11 @@ class GuardedController:
         self.winding = Winding(self._limits, self._limits.rated_current, 0.0)
         self._plausibility = Plausibility(band(0.0, 1.0, 0.0, 1.0, 1.0))
         self._frozen = Frozen(self._limits, Ends(0.0, 1.0, 0.0))
+        self.contradiction = Contradiction(self._limits, self._frozen.ends)
         self.configure(values)
         self._time: int | None = None
         self._duty = self._duty_at_loss = 0.0
+        self._applied: tuple[float, int] | None = None
         self._lost_at = 0
         self._bad_since: int | None = None
         self._good_samples = 0
@@ -63,13 +69,15 @@ class GuardedController:
         margin = values["hall_margin"]
         speed = values["top_speed"] or self._limits.top_speed
         self._plausibility.limits = band(closed, opened, margin, speed, law.angle_open - law.angle_closed)
-        self._frozen.ends = Ends(closed, opened, margin * (opened - closed))
+        self._frozen.ends = self.contradiction.ends = Ends(closed, opened, margin * (opened - closed))
         self.winding.rated_current = values["rated_current"] or self._limits.rated_current
         self.winding.time_constant = values["thermal_time_constant"]
         self.fallback = Fallback(values["on_fault"], values["hold_time"], values["close_duty"])
         self.loop.longest_step = values["longest_step"]
+        self.loop.command_timeout = values["command_timeout"]
         self._timeout = round(values["angle_timeout"] * 1e9)
         self._retry = values["frozen_retry"]
+        self._longest_heating = min(values["longest_step"], values["hall_timeout"] or math.inf)
 
     def duty(self, voltage: float, time: int) -> float:
         """Duty [1] for a sample [V] taken at `time` [ns]; the same time again repeats the same duty."""
@@ -85,8 +93,13 @@ class GuardedController:
             wanted = self._of_good_sample(voltage, time)
         else:
             wanted = self._of_bad_sample(self.objection, time)
-        self._duty = self._borne(wanted, min(elapsed, self.loop.longest_step))
+        self._duty = self._borne(wanted, min(elapsed, self._longest_heating))
         return self._given(self._duty)
+
+    def applied(self, duty: float) -> None:
+        """The actuator says which duty [1] it obeys; it may have dropped what was sent, or never got it."""
+        if math.isfinite(duty):
+            self._applied = duty, self.counts.samples
 
     def silence(self, text: str, elapsed: float) -> float:
         """Duty [1] `elapsed` [s] after the caller's clock found that no new good sample comes any more."""
@@ -101,6 +114,7 @@ class GuardedController:
         self.loop.restart()
         self._plausibility.forget()
         self._frozen.forget()
+        self.contradiction.forget()
         self._shaft.reset()
         self.lost = self.objection = self.last_good = self._time = self._bad_since = None
         self._duty = 0.0
@@ -112,6 +126,7 @@ class GuardedController:
         before, self.last_good = self.last_good, time
         self._bad_since = None
         self._shaft.take(voltage, 0.0 if before is None else (time - before) * 1e-9)
+        self.contradiction.take(voltage, self._acted(), time)
         if self.lost is not None:
             self._good_samples += 1
             if not self._is_back(voltage, time):
@@ -166,11 +181,17 @@ class GuardedController:
         )
         return Objection("hall_voltage_frozen", text)
 
+    def _acted(self) -> float:
+        """The duty since the last sample: what the actuator obeyed where it says so, else what was sent."""
+        if self._applied is not None and self.counts.samples - self._applied[1] <= TOLD:
+            return self._applied[0]
+        return self._given(self._duty)
+
     def _borne(self, wanted: float, elapsed: float) -> float:
         """The part of the wanted duty that the winding bears, after it was warmed by the one before."""
         speed = self._shaft.velocity if self.lost is None else 0.0
         was_off = self.winding.off
-        self.winding.warm(self.winding.current(self._given(self._duty), speed), elapsed)
+        self.winding.warm(self.winding.current(self._acted(), speed), elapsed)
         if was_off and not self.winding.off:
             self.loop.interrupt()
             return 0.0

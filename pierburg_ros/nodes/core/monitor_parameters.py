@@ -1,5 +1,6 @@
 """Parameters of the monitor node."""
 
+from pierburg_ros.nodes.core.joint import JOINT
 from pierburg_ros.parameter import Parameter as Declaration
 
 MONITOR = (
@@ -19,7 +20,7 @@ MONITOR = (
         fixed=True,
         choices=("applied_duty", "duty"),
     ),
-    Declaration("joint", "swirl_shaft", "name of the actuator's joint in joint_states", fixed=True),
+    Declaration("joint", "", JOINT, fixed=True),
     Declaration("recorder", "recorder", "node asked to split its recording at a finding; empty: none", fixed=True),
     Declaration(
         "tolerance",

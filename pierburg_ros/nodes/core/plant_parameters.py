@@ -1,8 +1,11 @@
 """Parameters of the plant node beside those of the physics."""
 
+from pierburg_ros.nodes.core.depth import DEPTH
+from pierburg_ros.nodes.core.joint import JOINT
 from pierburg_ros.parameter import Parameter as Declaration
 
 PLANT = (
+    DEPTH,
     Declaration("actuator", "pierburg", "name of an actuator, or path of its description", fixed=True),
     Declaration("model", "", "path of a model file; its actuator and values replace the nominal ones", fixed=True),
     Declaration(
@@ -12,6 +15,7 @@ PLANT = (
         fixed=True,
         choices=("exact", "textbook"),
     ),
+    Declaration("joint", "", JOINT, fixed=True),
     Declaration("hardware_id", "", "name of the actuator on /diagnostics; empty: that of its description", fixed=True),
     Declaration("rate", 500.0, "ticks per second", "Hz", 1.0, 2000.0),
     Declaration(

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 
 from pierburg_ros.control import Controller, Schedule, Setpoints
+from pierburg_ros.nodes.core.commanded_duty import CommandedDuty
 
 
 class SampledController:
-    """The control law, the setpoint in force, and a schedule of setpoints if there is one."""
+    """The control law, the setpoint in force, and a schedule of setpoints if there is one.
+
+    Where duties are `forwarded`, the newest of them stands in the place of the law's.
+    """
 
     def __init__(self, controller: Controller, setpoints: Setpoints, schedule: Schedule | None = None) -> None:
         self.longest_step = math.inf
@@ -18,6 +22,9 @@ class SampledController:
         self.controller = controller
         self.setpoints = setpoints
         self.schedule = schedule
+        self.forwarded: CommandedDuty | None = None
+        self.command_timeout = 0.0
+        """A forwarded duty holds so long [s]; 0: for ever."""
         self._scheduled: float | None = None
         self._first: int | None = None
         self.last: int | None = None
@@ -40,9 +47,17 @@ class SampledController:
             self._first = time
         elapsed = self._elapsed(time)
         self._follow_schedule((time - self._first) * 1e-9)
-        self._duty = self.controller.step(self.setpoints.active, hall_voltage, elapsed)
+        if self.forwarded is not None:
+            self._duty = self.forwarded.at(time, self.command_timeout)
+        else:
+            self._duty = self.controller.step(self.setpoints.active, hall_voltage, elapsed)
         self.last = time
         return self._duty
+
+    @property
+    def is_forsaken(self) -> bool:
+        """Whether the sender of forwarded duties has been silent for too long."""
+        return self.forwarded is not None and self.forwarded.lost(self.last or 0, self.command_timeout)
 
     def restart(self) -> None:
         """The next sample is the first of a new run."""

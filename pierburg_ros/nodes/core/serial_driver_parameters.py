@@ -1,12 +1,15 @@
 """Parameters of the serial driver node."""
 
+from pierburg_ros.nodes.core.depth import DEPTH
+from pierburg_ros.nodes.core.joint import JOINT
 from pierburg_ros.parameter import Parameter as Declaration
 
 SERIAL_DRIVER = (
+    DEPTH,
     Declaration("port", "/dev/ttyACM0", "serial line of the device", fixed=True),
     Declaration("speed", 921600, "speed of the line; lines over USB ignore it", "baud", 50, 4000000, fixed=True),
     Declaration("actuator", "pierburg", "name of an actuator, or path of its description", fixed=True),
-    Declaration("joint", "swirl_shaft", "name of the joint in joint_states", fixed=True),
+    Declaration("joint", "", JOINT, fixed=True),
     Declaration(
         "command_timeout",
         0.05,

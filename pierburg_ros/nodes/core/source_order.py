@@ -53,15 +53,14 @@ class SourceOrder(Generic[Item]):
     def due(self, now: int) -> list[Item]:
         """Items sent before the horizon, `now` [ns] being the present."""
         late = self._late if now - self._late_at < MEMORY * 1e9 else 0
-        limit = now - max(self._horizon, round(MARGIN * late))
+        return self.until(now - max(self._horizon, round(MARGIN * late)))
+
+    def until(self, time: float) -> list[Item]:
+        """Items sent up to `time` [ns]; all that are left up to infinity."""
         found = []
-        while self._waiting and self._waiting[0].sent <= limit:
+        while self._waiting and self._waiting[0].sent <= time:
             found.append(heapq.heappop(self._waiting).item)
         return found
-
-    def rest(self) -> list[Item]:
-        """All items that are left."""
-        return [heapq.heappop(self._waiting).item for _ in range(len(self._waiting))]
 
 
 class SimulatedTime:
@@ -70,16 +69,18 @@ class SimulatedTime:
     def __init__(self) -> None:
         self._sent: list[int] = []
         self._clock: list[int] = []
+        self._first: int | None = None
 
     def reading(self, sent: int, clock: int) -> None:
         """The clock said `clock` [ns] from `sent` [ns] on; readings come in the order of sending."""
+        self._first = sent if self._first is None else self._first
         self._sent.append(sent)
         self._clock.append(clock)
         if len(self._sent) > 2 * KEPT:
             del self._sent[:KEPT], self._clock[:KEPT]
 
-    def at(self, sent: int) -> int:
-        """The simulated time [ns] at `sent` [ns]; before the first reading, that one."""
-        if not self._clock:
-            return 0
+    def at(self, sent: int) -> int | None:
+        """The simulated time [ns] at `sent` [ns]; None before the first reading."""
+        if self._first is None or sent < self._first:
+            return None
         return self._clock[max(bisect_right(self._sent, sent) - 1, 0)]

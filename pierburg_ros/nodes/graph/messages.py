@@ -9,8 +9,6 @@ from std_msgs.msg import Float64
 
 SECOND = 1_000_000_000
 """Nanoseconds in a second."""
-SHAFT = "swirl_shaft"
-"""Name of the joint in `joint_states`, outside any namespace."""
 
 
 def stamp(time: int) -> Time:
@@ -31,11 +29,6 @@ def clock(time: int) -> Clock:
 def number(value: float) -> Float64:
     """One number."""
     return Float64(data=value)
-
-
-def joint_name(namespace: str) -> str:
-    """Name of the shaft's joint: with the namespace before it, so that two actuators differ on one robot."""
-    return "_".join([*namespace.strip("/").split("/"), SHAFT]).lstrip("_")
 
 
 def joint_state(joint: str, time: int, angle: float, velocity: float) -> JointState:

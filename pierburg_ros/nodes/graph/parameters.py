@@ -15,15 +15,19 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 from rcl_interfaces.msg import Parameter as ParameterMessage
+from rclpy.clock import JumpThreshold, TimeJump
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError, near
+from pierburg_ros.nodes.core.depth import DEPTH, KEPT
 from pierburg_ros.nodes.core.parameter_files import unread_files
 from pierburg_ros.nodes.graph.diagnostics import Diagnostics
-from pierburg_ros.nodes.graph.qos import COMMANDS, overridable
+from pierburg_ros.nodes.graph.qos import COMMANDS, PUBLISHED, overridable
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.parameter import Value
 
@@ -36,6 +40,9 @@ class LiveNode(Node):
     `values` holds what is in force. A subclass declares in its constructor, then calls `open_parameters`.
     """
 
+    later: tuple[str, ...] = ()
+    """Topics which a subclass has only at times, and for which `qos_overrides` may be given all the same."""
+
     def __init__(self, name: str) -> None:
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
         self.stopping = Event()
@@ -43,10 +50,26 @@ class LiveNode(Node):
         self._declared: dict[str, Declaration] = {}
         self.diagnostics = Diagnostics(self, self.counters)
         self._given = self._overrides()
+        backward = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
+        self._jumps = self.get_clock().create_jump_callback(backward, post_callback=self._on_jump_back)
+        self._complaints = unread_files(self.get_fully_qualified_name(), sys.argv)
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether time is simulated: then the plant waits for the recorder, and nothing may be overwritten before."""
+        return bool(self.get_parameter("use_sim_time").value)
+
+    @property
+    def kept(self) -> int:
+        """Messages that publishers of signals keep."""
+        return KEPT if self.is_simulated else int(self.values.get(DEPTH.name, KEPT))
 
     def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
         """A publisher whose quality of service `qos_overrides` may change, if it is one of the project's topics."""
-        return super().create_publisher(kind, topic, profile, **overridable(profile, options))
+        options = overridable(profile, options)
+        if profile is PUBLISHED:
+            profile = QoSProfile(depth=self.kept, reliability=PUBLISHED.reliability)
+        return super().create_publisher(kind, topic, profile, **options)
 
     def create_subscription(
         self, kind: type, topic: str, callback: Callable[..., None], profile: Any, **options: Any
@@ -67,34 +90,38 @@ class LiveNode(Node):
         """Numbers for `/diagnostics`."""
         return {}
 
-    def declare(self, declarations: Iterable[Declaration]) -> None:
-        """Declare parameters with the values given at the start where those are acceptable."""
+    def declare(self, declarations: Iterable[Declaration], more: bool = False) -> None:
+        """Declare parameters with the values given at the start; `more`: other declarations follow.
+
+        After the last ones InputError has a line for each value that is not acceptable and each name that is unknown.
+        """
         declared = {each.name: each for each in declarations}
         self._declared.update(declared)
-        values = {name: each.default for name, each in declared.items()}
-        for name in sorted(set(values) & set(self._given)):
-            try:
-                values[name] = declared[name].accepted(self._given.pop(name))
-            except InputError as error:
-                self.diagnostics.refuse(str(error))
-        try:
+        values = {name: self._start_value(each) for name, each in declared.items()}
+        self._complaints += [] if more else [self._unknown(name) for name in self._given]
+        if not self._complaints:
             self.accept(values)
-        except InputError as error:
-            self.diagnostics.refuse(f"{error} All values given at the start are left aside.")
-            values = {name: each.default for name, each in declared.items()}
-            self.accept(values)
+        if self._complaints and not more:
+            raise InputError(*self._complaints)
         for name, value in values.items():
             self.declare_parameter(name, value, descriptor(declared[name]), ignore_override=True)
         self.values.update(values)
 
     def open_parameters(self) -> None:
-        """From here on parameters can be set; names given at the start that do not exist are reported."""
-        for name in self._given:
-            self.diagnostics.refuse(self._unknown(name))
+        """From here on parameters can be set."""
         self.add_on_set_parameters_callback(self._on_set)
         self.create_subscription(ParameterMessage, "~/set_parameter", self._on_message, COMMANDS)
-        for reason in (*unread_files(self.get_fully_qualified_name(), sys.argv), *self._unused_overrides()):
+        for reason in self._unused_overrides():
             self.diagnostics.refuse(reason)
+
+    def _start_value(self, declaration: Declaration) -> Value | None:
+        """What was given at the start, or else the default; a complaint where it is not acceptable."""
+        if declaration.name in self._given:
+            try:
+                return declaration.accepted(self._given.pop(declaration.name))
+            except InputError as error:
+                self._complaints.append(str(error))
+        return declaration.default
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all of them or none: the one way in for services, the topic and code."""
@@ -104,6 +131,9 @@ class LiveNode(Node):
             return self._refused(str(error))
         result = super().set_parameters_atomically(checked)
         return result if result.successful else self._refused(result.reason)
+
+    def _on_jump_back(self, jump: TimeJump) -> None:
+        self.diagnostics.refuse(f"the clock went back by {-jump.delta.nanoseconds * 1e-9:.3g} s")
 
     def _on_message(self, message: ParameterMessage) -> None:
         self.set_parameters_atomically([Parameter.from_parameter_msg(message)])
@@ -136,6 +166,7 @@ class LiveNode(Node):
     def _unused_overrides(self) -> list[str]:
         """Complaints about qualities of service that were given for topics which this node does not have."""
         topics = {each.topic_name for each in (*self.publishers, *self.subscriptions)}
+        topics |= {self.resolve_topic_name(topic) for topic in self.later}
         given = {name.split(".")[0] for name in self.get_parameters_by_prefix("qos_overrides")}
         return [
             f"{self.get_name()} has no topic {topic} for qos_overrides; write its full name, as in"

@@ -5,16 +5,13 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from pierburg_ros.nodes.core.depth import KEPT
+
 SIGNALS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 """Reading signals at the sample rate: a late reader wants the newest ones, not the past."""
 
-KEPT = 10_000
-"""Messages that a publisher keeps for readers that are late and a recorder for itself: 20 s at 500 Hz, twice the time
-for which any one process may be without a processor. The room is taken when it is needed; 5000 messages waiting on
-each of four topics took 24 MB."""
-
 PUBLISHED = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.RELIABLE)
-"""Publishing them: kept for a recorder that a busy machine holds up."""
+"""Publishing them, in full: a node with a parameter `depth` keeps so many, see `LiveNode.kept`."""
 
 STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """What is said only when it changes: a reader that comes later gets the last one."""

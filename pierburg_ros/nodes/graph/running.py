@@ -31,20 +31,29 @@ def run(make: Callable[[], LiveNode]) -> NoReturn:
 
     What the node cannot start or go on with ends as one line on stderr and exit status 2.
     """
-    rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     status = 0
     try:
+        join()
         node = made(make)
         if node is not None:
             serve(node)
     except KeyboardInterrupt:  # between its making and its serving
         pass
     except InputError as error:
-        print(" ".join(str(error).split()), file=sys.stderr)
+        print(error, file=sys.stderr)
         status = 2
     finally:
         rclpy.try_shutdown()
     leave(status)
+
+
+def join() -> None:
+    """Join the graph with the arguments of the command line; InputError where ROS does not understand them."""
+    try:
+        rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        said = str(error).removeprefix("failed to initialize rcl: ").split(", at /")[0]
+        raise InputError(f"{said}. See 'ros2 run --help' for what may follow --ros-args.") from error
 
 
 def made(make: Callable[[], LiveNode]) -> LiveNode | None:

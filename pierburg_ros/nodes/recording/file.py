@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +28,11 @@ class Topic:
     kind: str
     qos: tuple[dict[str, Any], ...] = ()
 
+    @property
+    def lasts(self) -> bool:
+        """Whether its newest message holds on for readers that come later."""
+        return all(offer["durability"] == "transient_local" for offer in self.qos)
+
 
 class RecordingFile:
     """An MCAP file being written."""
@@ -36,6 +41,7 @@ class RecordingFile:
         """Make the file; OSError, and no file, where it exists or where there is no room for it."""
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = self.opened_as = path
+        self._lost: Counter[str] = Counter()
         self._whole = 0
         self._stream = path.open("xb")
         try:
@@ -52,21 +58,31 @@ class RecordingFile:
         """How many messages there are so far."""
         return sum(self.writer.counts.values())
 
-    def add(self, topic: Topic, data: bytes, sequence: int, publish_time: int, log_time: int) -> None:
-        """Append a message: its CDR bytes, its number among its publisher's, and its times [ns]."""
+    @property
+    def losses(self) -> dict[str, tuple[int, int]]:
+        """Messages that are missing in the file and that are in it, by topic."""
+        return {topic: (self._lost[topic], got) for topic, got in self.writer.counts.items()}
+
+    def add(self, topic: Topic, data: bytes, missing: int, publish_time: int, log_time: int) -> None:
+        """Append a message: its CDR bytes, how many are missing before it, and its times [ns].
+
+        Its number in the file counts the missing ones in, whatever the publishers of the topic count from.
+        """
         if topic.name not in self.writer.channels:
             kind = topic.kind
             self.writer.declare(topic.name, kind, definition(kind), type_hash(kind), list(topic.qos))
-        self.writer.write(topic.name, data, log_time, publish_time, sequence & 0xFFFFFFFF)
+        self._lost[topic.name] += missing
+        number = self.writer.counts[topic.name] + 1 + self._lost[topic.name]
+        self.writer.write(topic.name, data, log_time, publish_time, number & 0xFFFFFFFF)
 
     def flush(self) -> None:
         """Put what has come so far on disk."""
         self.writer.flush()
         self._whole = self._stream.tell()
 
-    def finish(self, losses: Mapping[str, tuple[int, int]]) -> None:
-        """Complete the file, with the lost and received messages of each topic in a metadata record."""
-        self.writer.note(LOSSES, {name: f"{lost} of {lost + got}" for name, (lost, got) in losses.items()})
+    def finish(self) -> None:
+        """Complete the file, with the lost and sent messages of each topic in a metadata record."""
+        self.writer.note(LOSSES, {name: f"{lost} of {lost + got}" for name, (lost, got) in self.losses.items()})
         self.writer.finish()
         self._stream.close()
 

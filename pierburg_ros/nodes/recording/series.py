@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from datetime import datetime
 from itertools import count
@@ -43,9 +43,9 @@ class RecordingSeries:
             return file
         raise AssertionError("the names never end")
 
-    def finish(self, file: RecordingFile, losses: Mapping[str, tuple[int, int]]) -> None:
-        """Complete `file` with its losses; OSError where the disk does not take it."""
-        file.finish(losses)
+    def finish(self, file: RecordingFile) -> None:
+        """Complete `file`; OSError where the disk does not take it."""
+        file.finish()
         self._describe()
 
     def give_up(self, file: RecordingFile) -> Path:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from time import monotonic
+
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock as ClockMessage
@@ -15,6 +18,10 @@ from pierburg_ros.nodes.recording.topics import Received
 CLOCK = "/clock"
 RECORDED_UNTIL = "/recorded_until"
 """Topic on which a recorder in simulated time says up to when it has everything; no stamp says that it leaves."""
+APART = 1.0
+"""Least time [s] between two files that a jump back begins: two sources of /clock jump at every reading."""
+Timed = tuple[Received, int, int]
+"""A message with its publish and log times [ns]."""
 OF_THE_PLANT = ("hall_voltage", "applied_duty", "joint_states")
 """Topics with a message for every tick."""
 
@@ -28,6 +35,8 @@ class RecordedTime:
         self._name = node.get_fully_qualified_name()
         self._followed = {CLOCK, *(node.resolve_topic_name(name) for name in OF_THE_PLANT)}
         self._last: dict[str, int] = {}
+        self._held: dict[str, Received] = {}
+        self._latest, self._jumped = 0, -APART
         self._publisher = node.create_publisher(Header, RECORDED_UNTIL, PROGRESS) if is_simulated else None
 
     def take(self, received: Received, sent: int) -> None:
@@ -39,17 +48,43 @@ class RecordedTime:
                 reading = deserialize_message(received.data, ClockMessage)
                 self._simulated.reading(sent, messages.nanoseconds(reading.clock))
 
-    def of(self, received: Received) -> tuple[int, int]:
-        """Publish and log time [ns] of a message."""
+    @property
+    def waits(self) -> bool:
+        """Whether there is no time yet, for the first `/clock` has not come."""
+        return self._is_simulated and CLOCK not in self._last
+
+    def parts(self, received: Iterable[Received]) -> list[list[Timed]]:
+        """Messages with their times, another part wherever simulated time goes back.
+
+        Before the first `/clock` there is no time: what lasts is held until then, and the rest left out.
+        """
         if not self._is_simulated:
-            return received.sent, received.arrived
-        time = self._simulated.at(min(received.sent, received.arrived))
-        return time, time
+            return [[(each, each.sent, each.arrived) for each in received]]
+        found: list[list[Timed]] = [[]]
+        for each in received:
+            time = self._simulated.at(min(each.sent, each.arrived))
+            if time is None:
+                self._held |= {each.topic.name: each} if each.topic.lasts else {}
+                continue
+            if self._goes_back(time):
+                found.append([])
+            found[-1] += [(held, time, time) for held in (*self._held.values(), each)]
+            self._held.clear()
+        return found
+
+    def _goes_back(self, time: int) -> bool:
+        back, self._latest = time < self._latest, time
+        now = monotonic()
+        if not back or now - self._jumped < APART:
+            return False
+        self._jumped = now
+        return True
 
     def tell(self) -> None:
         """Publish up to which simulated time every message of the plant has come."""
-        if self._last and CLOCK in self._last:
-            self._publish(self._simulated.at(min(self._last.values())))
+        until = self._simulated.at(min(self._last.values())) if self._last else None
+        if until is not None:
+            self._publish(until)
 
     def leave(self) -> None:
         """Publish that nobody need wait any more."""

@@ -15,18 +15,21 @@ from rclpy.subscription import Subscription
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.core.numbering import Numbering
 from pierburg_ros.nodes.core.recorder_parameters import BOOL, DEFAULT_TOPICS
+from pierburg_ros.nodes.core.steady_senders import SteadySenders
+from pierburg_ros.nodes.graph.publishers import publishers_of
 from pierburg_ros.nodes.graph.qos import RECORDED, described
+from pierburg_ros.nodes.graph.taken import Taken, Taker
 from pierburg_ros.nodes.recording.definitions import message_class, type_hash
 from pierburg_ros.nodes.recording.file import Topic
 
 
 @dataclass(frozen=True)
 class Received:
-    """A message as it came: its number among its publisher's, and when it was sent, received and taken [ns]."""
+    """A message as it came: how many are missing before it, and when it was sent, received and taken [ns]."""
 
     topic: Topic
     data: bytes
-    sequence: int
+    missing: int
     sent: int
     arrived: int
     taken: int
@@ -48,20 +51,21 @@ class ServedElsewhere(CallbackGroup):
 
 
 class RecordedTopics:
-    """Keeps every wanted topic subscribed and gives what has come, counting gaps in the numbering.
+    """Keeps every wanted topic subscribed and gives what has come, with the gaps in each publisher's numbering.
 
     `take` may be called from one thread while another one looks at the graph.
     """
 
     def __init__(self, node: Node, names: Iterable[str]) -> None:
-        self.numbering: dict[str, Numbering] = {}
+        self._numbering = Numbering()
+        self._senders = SteadySenders()
+        self._taker = Taker()
         self._node = node
         self._kinds = {node.resolve_topic_name(name): DEFAULT_TOPICS.get(name) for name in names}
         self._group = ServedElsewhere()
         self._lock = Lock()
         self._subscriptions: dict[str, Subscription] = {}
         self._topics: dict[str, Topic] = {}
-        self._publishers: dict[str, int] = {}
         for name, kind in self._kinds.items():
             if kind is not None:
                 self._subscribe(name, kind, RECORDED)
@@ -72,30 +76,24 @@ class RecordedTopics:
         for name, known in list(self._kinds.items()):
             kinds = [known] if known else present.get(name, [])
             offers = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
-            self._publishers[name] = len(offers)
             if kinds and offers:
                 is_wanted = known in (None, BOOL)  # A state holds on; the past of the log belongs to other runs.
                 self._subscribe(name, kinds[0], profile_for(offers, keeps_history=is_wanted))
 
     def take(self) -> list[Received]:
         """All that has arrived, topic by topic."""
-        found: list[Received] = []
         with self._lock:
-            for name, subscription in self._subscriptions.items():
-                with subscription.handle:
-                    while taken := subscription.handle.take_message(subscription.msg_type, True):
-                        found.append(self._received(name, *taken))
-        return found
+            return [
+                self._received(name, taken)
+                for name, subscription in self._subscriptions.items()
+                for taken in self._taker.taken(subscription)
+            ]
 
-    def losses(self) -> dict[str, tuple[int, int]]:
-        """Lost and received messages of every topic that has had any."""
-        return {name: (each.lost, each.received) for name, each in self.numbering.items() if each.received}
-
-    def count_anew(self) -> None:
-        """Begin the counts of a new file."""
+    def behind(self, time: int) -> list[str]:
+        """Topics of which more is on the way: a steady publisher's, of whom nothing sent after `time` [ns] has come."""
+        present = {name: publishers_of(self._node, name) for name in self._subscriptions}
         with self._lock:
-            for each in self.numbering.values():
-                each.forget_counts()
+            return [name for name, ids in present.items() if self._senders.behind(set(map(bytes.fromhex, ids)), time)]
 
     def _subscribe(self, name: str, kind: str, profile: QoSProfile) -> None:
         current = self._subscriptions.get(name)
@@ -114,17 +112,15 @@ class RecordedTopics:
         with self._lock:
             self._subscriptions[name] = made
             self._topics.setdefault(name, Topic(name, kind))
-            self.numbering.setdefault(name, Numbering())
         if current is not None:
             self._node.destroy_subscription(current)
 
-    def _received(self, name: str, data: bytes, info: dict[str, int]) -> Received:
-        if not self.numbering[name].received and not self._topics[name].qos:
+    def _received(self, name: str, taken: Taken) -> Received:
+        if not self._topics[name].qos:
             self._topics[name] = self._described(name)
-        sequence = info["publication_sequence_number"]
-        self.numbering[name].take(sequence, self._publishers.get(name, 1))
-        sent, arrived = info["source_timestamp"], info["received_timestamp"]
-        return Received(self._topics[name], data, sequence, sent, arrived, time.time_ns())
+        missing = self._numbering.take(taken.publisher, taken.number)
+        self._senders.take(taken.publisher, taken.sent)
+        return Received(self._topics[name], taken.data, missing, taken.sent, taken.arrived, time.time_ns())
 
     def _described(self, name: str) -> Topic:
         offers = self._node.get_publishers_info_by_topic(name)

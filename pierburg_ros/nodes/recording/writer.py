@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.recording.file import RecordingFile
@@ -12,9 +12,6 @@ from pierburg_ros.nodes.recording.topics import Received
 
 AGAIN = 1.0
 """Time [s] after which a new file is tried where the last one ended for want of room."""
-
-Losses = Mapping[str, tuple[int, int]]
-"""Lost and received messages by topic."""
 
 
 class RecordingWriter:
@@ -27,18 +24,18 @@ class RecordingWriter:
         self._series = series
         self._flushed = self._tried = time.monotonic()
 
-    def begin(self, losses: Losses) -> None:
-        """Go on in a new file, and complete the one before, with its losses; InputError where there can be none."""
+    def begin(self) -> None:
+        """Go on in a new file, and complete the one before; InputError where there can be none."""
         self._tried = time.monotonic()
         before, self.file = self.file, self._series.open()
         self.problem = ""
         if before is not None:
-            self._finish(before, losses)
+            self._finish(before)
 
-    def end(self, losses: Losses) -> None:
+    def end(self) -> None:
         """Complete the file; `problem` says so where the disk does not take its end."""
         finished, self.file = self.file, None
-        self._finish(finished, losses)
+        self._finish(finished)
 
     def rest(self) -> None:
         """Stop trying: no file is wanted."""
@@ -58,7 +55,7 @@ class RecordingWriter:
             return True
         try:
             for each, published, logged in messages:
-                self.file.add(each.topic, each.data, each.sequence, published, logged)
+                self.file.add(each.topic, each.data, each.missing, published, logged)
             if time.monotonic() - self._flushed > flush_interval:
                 self.file.flush()
                 self._flushed = time.monotonic()
@@ -68,9 +65,9 @@ class RecordingWriter:
             return False
         return True
 
-    def _finish(self, file: RecordingFile, losses: Losses) -> None:
+    def _finish(self, file: RecordingFile) -> None:
         try:
-            self._series.finish(file, losses)
+            self._series.finish(file)
         except OSError as error:
             self._give_up(file, error)
         except InputError as error:

@@ -47,6 +47,7 @@ class ControllerReports:
             diagnostics.end("waiting")
             self._step()
         self.fault()
+        self._contradicted()
         self._heat.tell()
 
     def fault(self) -> None:
@@ -58,6 +59,21 @@ class ControllerReports:
         if lost is not None:
             text = f"{lost.text}: {answer(self._guarded.fallback)}"
             self._diagnostics.begin(lost.name, ERROR, text, SENSOR)
+
+    def forwarded(self, duty: float, is_within: bool) -> None:
+        """A duty [1] was taken from `joint_commands`, clipped where it was not within its range."""
+        if is_within:
+            self._diagnostics.end("duty_clipped")
+        else:
+            self._diagnostics.begin("duty_clipped", WARN, f"duty {duty:g} is beyond +-1 and was clipped")
+
+    def _contradicted(self) -> None:
+        """Name an angle that does not go where the duty drives it."""
+        found = self._guarded.contradiction.found
+        if found is None:
+            self._diagnostics.end("contradiction")
+        else:
+            self._diagnostics.begin("contradiction", WARN, found.text, SENSOR)
 
     def no_clock(self) -> None:
         """A sample came while no simulated time is known."""
@@ -76,12 +92,18 @@ class ControllerReports:
         self._diagnostics.begin("waiting", level, "waiting for hall_voltage", SENSOR)
 
     def _step(self) -> None:
-        bounded, longest = self._guarded.loop.bounded, self._guarded.loop.longest_step
+        loop = self._guarded.loop
+        bounded, longest = loop.bounded, loop.longest_step
         if bounded is None:
             self._diagnostics.end("time_step")
         else:
             text = f"{bounded:.3g} s lay between two Hall samples: counted as {longest:g} s"
             self._diagnostics.begin("time_step", WARN, text, SENSOR)
+        if loop.is_forsaken:
+            text = f"no joint_commands for {loop.command_timeout:g} s: duty 0"
+            self._diagnostics.begin("command_timeout", WARN, text)
+        else:
+            self._diagnostics.end("command_timeout")
 
     def _sensor(self) -> Mapping[str, object]:
         now, counts = time.monotonic(), self._guarded.counts

@@ -13,6 +13,7 @@ from pierburg_ros.recording.formats.messages import Bag, Messages
 from pierburg_ros.recording.inspection.content import FieldContent, Guesses, TopicContent, contents_of, rate
 from pierburg_ros.recording.inspection.fields import Field, fields_of
 from pierburg_ros.recording.inspection.guesses import guess
+from pierburg_ros.recording.inspection.likeness import likened
 from pierburg_ros.recording.loss import are_numbered, numbered_loss, pauses
 from pierburg_ros.recording.signal_map import SignalMap
 from pierburg_ros.recording.signals import SIGNALS, last_name
@@ -23,6 +24,7 @@ def topics(bag: Bag, chosen: SignalMap) -> tuple[tuple[TopicContent, ...], Guess
     found = {topic: bag.messages(topic) for topic in sorted(bag.types)}
     fields = {topic: fields_of(messages) for topic, messages in found.items()}
     guessed = {field: guess(field) for several in fields.values() for field in several}
+    guessed |= likened(guessed)
     first = min((int(each.log_time[0]) for each in found.values() if len(each)), default=0)
     contents = tuple(
         topic_content(each, first, used_as(each, chosen), contents_of(fields[topic], guessed), fields[topic])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 
+import numpy as np
+
 from pierburg_ros.errors import printable
 from pierburg_ros.recording.inspection.guesses import BY_RANGE, Guess, by_signal, is_still
 from pierburg_ros.recording.inspection.table_time import TimeGuess
@@ -12,16 +14,18 @@ from pierburg_ros.recording.signals import DRIVING, MEASURED, OPTIONAL
 
 HEAD = """\
 # Signal map of {name}. Every line is a guess with its reason: check names, units and signs, and edit.
-# value = sign * unit * scale * raw + offset, in SI. A line behind a # is another possibility, or was not needed.
+# value = sign * unit * scale * raw + offset, in SI. A line behind a # is another possibility, or was not needed.{joint}
 """
+JOINT = "\n# Of the joints it is {joint}, which moves furthest; write another name in its place to read that one."
 MOST_OTHERS = 5
 """Other possibilities of a signal that are listed."""
 
 
 def draft(name: str, guesses: Iterable[Guess], time: TimeGuess | None, is_table: bool) -> str:
     """The text of a signal map of the recording `name`, of a table or of topics."""
-    found = by_signal(guesses)
-    lines = [HEAD.format(name=printable(name))]
+    joint, own = of_one_joint(list(guesses))
+    found = by_signal(own)
+    lines = [HEAD.format(name=printable(name), joint=JOINT.format(joint=printable(joint)) if joint else "")]
     lines += group(found, tuple(DRIVING), "an input (duty, current or torque)")
     lines += group(found, tuple(MEASURED), "a measured signal (hall_voltage, position or speed)")
     for signal in OPTIONAL:
@@ -34,6 +38,16 @@ def draft(name: str, guesses: Iterable[Guess], time: TimeGuess | None, is_table:
     elif is_table:
         lines.append("# time: no column rises from row to row. Name it: time: {column: NAME, unit: s}")
     return "\n".join(lines) + "\n"
+
+
+def of_one_joint(guesses: list[Guess]) -> tuple[str, list[Guess]]:
+    """The joint that moves furthest, empty where there are not several, and the guesses without those of the others."""
+    positions = [each for each in guesses if each.element and each.signal == "position"]
+    joints = {each.element for each in positions}
+    if len(joints) < 2:
+        return "", guesses
+    furthest = max(positions, key=lambda each: np.ptp(each.field.limits or 0.0)).element
+    return furthest, [each for each in guesses if each.element not in joints - {furthest}]
 
 
 def group(found: dict[str, list[Guess]], signals: tuple[str, ...], wanted: str) -> list[str]:

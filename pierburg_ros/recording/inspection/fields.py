@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import keyword
+import re
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from numbers import Real
 from typing import Any
 
@@ -27,14 +28,17 @@ MOST_ELEMENTS = 16
 MOST_FIELDS = 100
 """Numbers of a message that are listed."""
 STAMP = {"sec", "nanosec"}
+ELEMENT = re.compile(r"\[([^\[\]]+)\]")
+"""An element of an array in a path."""
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
     """One number of a topic or of a table: where it stands, and values of it, shape (messages that were looked at,).
 
-    `path` is empty for a column; `file` is the table that it stands in where there are several, and `unit` the one that
-    the table states of it, empty where none.
+    `time` [s] is when these messages were written, of the same shape, empty in a table. `path` is empty for a column;
+    `file` is the table that it stands in where there are several, and `unit` the one that the table states of it, empty
+    where none.
     """
 
     name: str
@@ -43,6 +47,17 @@ class Field:
     values: Signal
     file: str = ""
     unit: str = ""
+    time: Signal = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def bare(self) -> str:
+        """The path without the elements of arrays."""
+        return ELEMENT.sub("", self.path)
+
+    @property
+    def element(self) -> str:
+        """The first name of an element in the path, as a rule that of a joint; empty where there is none."""
+        return next((name for name in ELEMENT.findall(self.path) if not name.isdecimal()), "")
 
     @property
     def whole(self) -> bool:
@@ -61,19 +76,30 @@ def fields_of(messages: Messages) -> tuple[Field, ...]:
     if not len(messages) or messages.encoding != "cdr" or not all(messages.data[:1]):
         return ()
     if messages.type in DECODERS and messages.type != JOINT_STATE:
-        return (Field(messages.topic, messages.type, "data", DECODERS[messages.type](messages)),)
+        values = DECODERS[messages.type](messages)
+        return (Field(messages.topic, messages.type, "data", values, time=written(messages)),)
     try:
         store = types_of(messages.type, messages.definition)
-        found: dict[str, list[float]] = defaultdict(list)
+        found: dict[str, list[tuple[int, float]]] = defaultdict(list)
         for place in np.unique(np.linspace(0, len(messages) - 1, MOST_LOOKED_AT).astype(int)):
             message = decoded(store, messages, int(place), messages.data[place])
             for count, (path, value) in enumerate(leaves(message, "", [message], DEEPEST)):
                 if count >= MOST_FIELDS:
                     break
-                found[path].append(float(value))
+                found[path].append((int(place), float(value)))
     except InputError:
         return ()
-    return tuple(Field(messages.topic, messages.type, path, np.array(values)) for path, values in found.items())
+    made = {path: np.array(parts, np.float64).T for path, parts in found.items()}
+    time = written(messages)
+    return tuple(
+        Field(messages.topic, messages.type, path, values, time=time[places.astype(np.int64)])
+        for path, (places, values) in made.items()
+    )
+
+
+def written(messages: Messages) -> Signal:
+    """When the messages were written [s]."""
+    return messages.log_time.astype(np.float64) * 1e-9
 
 
 def leaves(node: Any, path: str, around: list[Any], depth: int) -> Iterator[tuple[str, float]]:

@@ -11,20 +11,19 @@ import numpy as np
 
 from pierburg_ros.recording.formats.cdr import JOINT_STATE
 from pierburg_ros.recording.inspection.fields import Field
-from pierburg_ros.recording.signals import SIGNALS, last_name
+from pierburg_ros.recording.signals import MEASURED, SIGNALS, last_name
 from pierburg_ros.recording.units import COUNTS, unit_of
 
 WORDS = {
     "enabled": {"enabled", "enable", "powered", "on"},
     "temperature": {"temperature", "temp"},
     "duty": {"duty", "pwm", "throttle", "dutycycle"},
-    "setpoints": {"setpoint", "setpoints", "target", "reference", "ref", "desired", "goal", "wanted"},
     "supply_voltage": {"vbat", "ubat", "bat", "batt", "battery", "vbus", "vdc", "udc", "supply", "vin"},
     "hall_voltage": {"hall", "adc", "ain", "analog", "sensor"},
     "current": {"current", "cur", "iq", "i", "amps", "amperes"},
-    "torque": {"torque", "tau", "effort", "moment"},
-    "speed": {"velocity", "vel", "speed", "omega", "rpm", "dq", "qd"},
-    "position": {"position", "pos", "angle", "theta", "phi", "encoder", "enc", "q", "winkel"},
+    "torque": {"torque", "tau", "effort", "efforts", "moment"},
+    "speed": {"velocity", "velocities", "vel", "speed", "omega", "rpm", "dq", "qd", "dot"},
+    "position": {"position", "positions", "pos", "angle", "theta", "phi", "encoder", "enc", "q", "winkel"},
 }
 """Words in the name of a topic, field or column that speak for a signal; the first that matches counts."""
 UNIT_WORDS = {
@@ -37,8 +36,20 @@ SIGNAL_OF_UNIT = {
     "N.m": "torque", "degC": "temperature",
 }  # fmt: skip
 """What a unit speaks for where no other word does."""
+SETPOINTS = {"setpoint", "setpoints", "target", "reference", "ref", "desired", "goal", "wanted"}
+"""Words that speak for what is wanted, where no other says of what, of a position."""
 COMMANDS = {"command", "commands", "cmd"}
-"""Words that speak for what is wanted: of a position, or a duty."""
+"""Words that speak for what is sent: a position, or a duty."""
+OUTPUT = "output"
+"""The word in a path for what a controller sends."""
+UNSAID = {"feedback": "position", OUTPUT: "torque"}
+"""What these words in the state of a controller are taken for where no other says of what they are."""
+UNNAMED = {"data", "value", "values"}
+"""Names of fields that say nothing, so that the topic's name counts as theirs."""
+NO_SIGNALS = {"error", "errors", "acceleration", "accelerations", "layout", "scaling"}
+"""Words in a path or a topic for what is no signal."""
+IN_SI = {"sensor_msgs", "control_msgs", "trajectory_msgs"}
+"""Packages whose joints are in radian (REP 103)."""
 TIMES = {"sec", "nanosec", "secs", "nsecs", "micros", "millis", "stamp", "timestamp", "time", "seq", "us", "ns", "ms"}
 """Words in the name of a time or a number of messages, which is no signal."""
 TURN = 2.0 * pi
@@ -56,7 +67,10 @@ BY_RANGE = 3
 
 @dataclass(frozen=True)
 class Guess:
-    """What a field could be: the signal, what to write into a map, and why; `rank` says how well it is founded."""
+    """What a field could be: the signal, what to write into a map, and why; `rank` says how well it is founded.
+
+    `element` is the joint or other named element that it is of, empty where that is not known.
+    """
 
     field: Field
     signal: str
@@ -65,6 +79,7 @@ class Guess:
     offset: float
     reason: str
     rank: int
+    element: str = ""
 
     def __str__(self) -> str:
         """As people read it: `0 to 100: duty [percent]?`."""
@@ -76,37 +91,51 @@ def guess(field: Field) -> Guess | None:
     """What `field` could be; None where nothing speaks for anything, or nothing was sent."""
     if field.limits is None:
         return None
+    bare = words(field.bare.rpartition(".")[2] or field.name)
     last = words(field.path.rpartition(".")[2] or field.name)
-    if last & TIMES and not last & {"temp", "temperature"}:
-        return None
     own, outer = words(field.path), words(last_name(field.name))
-    last = last | outer if field.path == "data" else last
+    role = words(field.bare) | (outer - {OUTPUT})
+    if role & NO_SIGNALS or (last & TIMES and not last & {"temp", "temperature"}):
+        return None
+    last = last | outer if bare <= UNNAMED else last
     every = last | own | outer | words(field.name)
-    for rank, names in enumerate((last, own | last, every)):
-        signal = signal_named(names, field.limits[1], field.unit)
-        if signal is not None:
-            return known_as(field, signal, rank, last | own | outer)
+    for rank, names in ((0, bare), (0, last), (1, own | last), (2, every)):
+        quantity = signal_named(names, field.limits[1], field.unit)
+        if quantity is not None:
+            signal = asked(quantity, role)
+            return known_as(field, signal, rank, last | own | outer) if signal else None
+    if role & SETPOINTS and fits("setpoints", field.unit):
+        return known_as(field, "setpoints", 0, last | own | outer)
     if field.unit not in ("", COUNTS):
         signal = signal_in(field.unit, field.limits[1])
         return known_as(field, signal, BY_RANGE, set()) if signal else None
     ranged = by_range(field)
+    unsaid = next((signal for word, signal in UNSAID.items() if word in bare), None)
+    if unsaid is not None:
+        return known_as(field, unsaid, 2, set())
     is_command = every & COMMANDS and (ranged is None or ranged.signal != "duty")
     return known_as(field, "setpoints", BY_RANGE, last | own) if is_command else ranged
 
 
 def signal_named(names: set[str], largest: float, unit: str = "") -> str | None:
-    """The signal that words in a name speak for, one that a stated `unit` measures.
+    """What words in a name speak for, measured or sent, and a stated `unit` measures.
 
     A voltage is a sensor's or the supply by its `largest` value.
     """
     for signal, known in WORDS.items():
         if names & known and fits(signal, unit):
-            applied, wanted = signal == "duty" and "applied" in names, signal == "position" and names & COMMANDS
-            return "applied_duty" if applied else "setpoints" if wanted else signal
+            return "applied_duty" if signal == "duty" and "applied" in names else signal
     if names & {"voltage", "volts", "volt"} and fits("hall_voltage", unit):
         return voltage(largest, unit)
     named = (SIGNAL_OF_UNIT[each] for each in units_in(names) if each in SIGNAL_OF_UNIT)
     return None if unit else next(named, None)
+
+
+def asked(quantity: str, role: set[str]) -> str | None:
+    """The signal that a `quantity` is in its `role`: a wanted position is a setpoint, a wanted speed is none."""
+    if quantity not in MEASURED or not role & {*SETPOINTS, *COMMANDS, OUTPUT}:
+        return quantity
+    return "setpoints" if quantity == "position" else None
 
 
 def fits(signal: str, unit: str) -> bool:
@@ -139,16 +168,14 @@ def words(name: str) -> set[str]:
 
 def known_as(field: Field, signal: str, rank: int, names: set[str]) -> Guess | None:
     """The guess that `field` is `signal`, with the unit that its name or its range speaks for."""
-    if signal not in SIGNALS or (signal == "setpoints" and field.type == JOINT_STATE):
-        return None
     low, high = field.limits or (0.0, 0.0)
     named = next(iter(units_in(names)), "")
     unit, scale, offset = stated_or(in_unit(field, signal, named, max(abs(low), abs(high))), field.unit)
     if unit == COUNTS and scale == 1.0:
         return None
     told = "JointState, " if field.type == JOINT_STATE else ""
-    told += "a torque or a current as its driver says, " if told and signal == "torque" else ""
-    return Guess(field, signal, unit, scale, offset, f"{told}{low:.4g} to {high:.4g}", rank)
+    told += "a torque or a current as its driver says, " if signal == "torque" and "effort" in names else ""
+    return Guess(field, signal, unit, scale, offset, f"{told}{low:.4g} to {high:.4g}", rank, field.element)
 
 
 def stated_or(guessed: tuple[str, float, float], stated: str) -> tuple[str, float, float]:
@@ -167,7 +194,7 @@ def in_unit(field: Field, signal: str, named: str, largest: float) -> tuple[str,
         is_counted = largest > 100.0 or field.unit == COUNTS
         return (COUNTS, 1.0 / full_scale(largest), 0.0) if is_counted else ("1", 1.0, 0.0)
     if signal in ("position", "setpoints"):
-        if field.type == JOINT_STATE or named == "rad":
+        if field.type.partition("/")[0] in IN_SI or named == "rad":
             return "rad", 1.0, 0.0
         if COUNTS in (named, field.unit) or (counted and largest > DEGREES):
             return COUNTS, TURN / (full_scale(largest) + 1), 0.0

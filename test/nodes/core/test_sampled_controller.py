@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.control import Controller, Setpoints, read_setpoint_file
+from pierburg_ros.nodes.core.commanded_duty import CommandedDuty
 from pierburg_ros.nodes.core.sampled_controller import SampledController
 
 PERIOD = 2_000_000  # ns
@@ -63,3 +64,14 @@ def test_an_interruption_keeps_the_schedules_time(loop, tmp_path):
     loop.interrupt()
     loop.duty(0.6, 6 * PERIOD)
     assert loop.setpoints.active == 0.8
+
+
+def test_forwarded_duties_stand_in_the_place_of_the_laws_until_their_sender_is_silent(loop):
+    loop.forwarded, loop.command_timeout = CommandedDuty(), 0.05
+    assert loop.duty(0.6, PERIOD) == 0.0 and not loop.is_forsaken
+    loop.forwarded.offer(0.3)
+    assert [loop.duty(0.6, tick * PERIOD) for tick in range(2, 28)] == [0.3] * 26
+    assert not loop.is_forsaken
+    assert loop.duty(0.6, 28 * PERIOD) == 0.0 and loop.is_forsaken
+    loop.forwarded.offer(-0.2)
+    assert loop.duty(0.6, 29 * PERIOD) == -0.2 and not loop.is_forsaken

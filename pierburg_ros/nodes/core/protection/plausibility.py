@@ -41,7 +41,11 @@ def band(closed: float, opened: float, margin: float, speed: float, travel: floa
 
 
 class Plausibility:
-    """Judges samples one by one; remembers the last good one and the samples that object to it."""
+    """Judges samples one by one; remembers the last good one and the samples that object to it.
+
+    A sample has the time of its sending, and a busy machine may send it late: it was taken some time after the one
+    before it. So the shaft has had the time since then.
+    """
 
     def __init__(self, limits: Band) -> None:
         self.limits = limits
@@ -51,18 +55,20 @@ class Plausibility:
         """The next sample has no past: only its place in the band counts."""
         self._good: tuple[float, int] | None = None
         self._candidate: tuple[float, int] | None = None
+        self._before: int | None = None
         self._agreeing = 0
 
     def objection(self, voltage: float, time: int) -> Objection | None:
-        """What speaks against a sample [V] taken at `time` [ns]; None where it is good."""
+        """What speaks against a sample [V] sent at `time` [ns]; None where it is good."""
+        earliest, self._before = time if self._before is None else self._before, time
         found = self._outside(voltage)
         if found is not None:
             self._candidate, self._agreeing = None, 0
             return found
         if self._good is not None and not self._reachable(self._good, voltage, time):
-            found = self._jumped(voltage, time)
+            found = self._jumped(voltage, time, earliest)
         if found is None:
-            self._good, self._candidate, self._agreeing = (voltage, time), None, 0
+            self._good, self._candidate, self._agreeing = (voltage, earliest), None, 0
         return found
 
     def _outside(self, voltage: float) -> Objection | None:
@@ -78,10 +84,10 @@ class Plausibility:
         elapsed = max(time - start[1], 0) * 1e-9
         return abs(voltage - start[0]) <= self.limits.rate * elapsed + self.limits.noise
 
-    def _jumped(self, voltage: float, time: int) -> Objection | None:
+    def _jumped(self, voltage: float, time: int, earliest: int) -> Objection | None:
         agrees = self._candidate is not None and self._reachable(self._candidate, voltage, time)
         self._agreeing = self._agreeing + 1 if agrees else 1
-        self._candidate = (voltage, time)
+        self._candidate = (voltage, earliest)
         if self._agreeing >= CONFIRMATIONS:
             return None
         text = f"Hall voltage {voltage:.4g} V came faster than the shaft turns ({self.limits.rate:.3g} V/s)"
