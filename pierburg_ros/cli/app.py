@@ -94,7 +94,7 @@ COMMANDS = {
     "diagnose": Command(
         "Locate a mismatch, name the missing physics, model it, show the fit improve.",
         examples=(
-            "pierburg diagnose run.mcap -o diagnosis",
+            "pierburg diagnose run.mcap",
             "pierburg diagnose a.mcap b.mcap --actuator my.yaml -o d",
             "pierburg diagnose run.mcap --simulation sim.mcap -o out",
             "pierburg diagnose run.mcap -o out --json > found.json",

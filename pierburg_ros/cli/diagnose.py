@@ -14,7 +14,14 @@ from pierburg_ros.cli.console.progress import Step, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.options.recordings import (
+    ResultsOption,
+    SignalsOption,
+    TimeOption,
+    TopicOption,
+    results_folder,
+    topics_of,
+)
 from pierburg_ros.cli.options.viewers import RerunOption
 from pierburg_ros.diagnosis.report.terminal import shown
 from pierburg_ros.diagnosis.search.tried import Tried
@@ -32,7 +39,7 @@ DRAWING = ("pierburg_ros.diagnosis.report.page", "pierburg_ros.diagnosis.report.
 
 def diagnose(
     recordings: Annotated[list[Path], typer.Argument(help="MCAP, rosbag2 directories or CSV, of one actuator.")],
-    output: Annotated[Path, typer.Option(help="Folder for the results.")],
+    output: ResultsOption = None,
     simulation: Annotated[
         list[Path] | None,
         typer.Option(
@@ -59,7 +66,7 @@ def diagnose(
     Writes diagnosis.json, model.yaml, report.html, overview.png and diagnosis.mcap (for Foxglove and PlotJuggler,
     beside the recording) to the output folder. Ctrl-C gives the best verdict yet.
     """
-    nominal = chosen_model(model, actuator)
+    nominal, output = chosen_model(model, actuator), results_folder(output, "diagnose", recordings[0])
     if simulation_signals and not simulation:
         raise InputError("Found --simulation-signals without --simulation. Name the recordings of your simulator.")
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.models import notes
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.model import Model
 
@@ -25,14 +26,15 @@ def export(
     exported = Model.read(model).export(to)
     exported.write(output)
     console = terminal()
-    for note in exported.notes:
+    said = [*notes(model), *exported.notes]
+    for note in said:
         console.print(note, soft_wrap=True, markup=False)
     if exported.left_out:
         console.print(f"Left out, since {to} has no place for it (the file lists it too):")
         for each in exported.left_out:
             console.print(f"  {each}", soft_wrap=True, markup=False)
     console.print(f"Written to {output}", soft_wrap=True, markup=False)
-    return {"file": str(output), "format": to, "notes": exported.notes, "left_out": exported.left_out}
+    return {"file": str(output), "format": to, "notes": said, "left_out": exported.left_out}
 
 
 def refuse_folder(output: Path) -> None:

@@ -14,11 +14,13 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.options.recordings import (
+    ResultsOption,
     SignalsOption,
     TimeOption,
     TopicOption,
     faults_first,
     losses_first,
+    results_folder,
     topics_of,
 )
 from pierburg_ros.errors import InputError
@@ -39,7 +41,7 @@ from pierburg_ros.library.reading import read, taken_up
 
 def identify(
     recordings: Annotated[list[Path] | None, typer.Argument(help="MCAP, rosbag2 directories or CSV.")] = None,
-    output: Annotated[Path | None, typer.Option(help="Folder for the results.")] = None,
+    output: ResultsOption = None,
     actuator: ActuatorOption = None,
     model: ModelOption = None,
     free: Annotated[
@@ -62,12 +64,9 @@ def identify(
         console.print("\n".join(audit_lines(checks)), soft_wrap=True)
         if not recordings:
             return {"audit": [asdict(check) for check in checks]}
-    if not recordings or output is None:
-        raise InputError(
-            "identify found no recording or no --output, expected both, or --audit. Write pierburg identify"
-            " run.mcap --output DIR."
-        )
-    start = chosen_model(model, actuator)
+    if not recordings:
+        raise InputError("identify found no recording, expected one, or --audit. Write pierburg identify run.mcap.")
+    start, output = chosen_model(model, actuator), results_folder(output, "identify", recordings[0])
     measured = [
         read(path, time=time, topics=topics_of(topic), signals=signals, actuator=start.actuator) for path in recordings
     ]

@@ -115,12 +115,14 @@ class Diagnosis(Result):
 
         Of several recordings they are diagnosis_1.mcap and so on, in their order; none where nothing is concluded.
         """
+        from pierburg_ros.diagnosis.report.model_file import model_text
         from pierburg_ros.diagnosis.report.page import write_page
         from pierburg_ros.library.origin import origin
 
         self.document.write(folder / "diagnosis.json")
-        self.model.write(folder / "model.yaml")
-        write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings))
+        model = folder / "model.yaml"
+        model.write_text(model_text(self.found), encoding="utf-8")
+        write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings, model))
         self.picture().savefig(folder / "overview.png", dpi=110)
         laid = overlays.of_diagnosis(self.found, self.recordings)
         for number, overlay in enumerate(laid, 1):

@@ -134,6 +134,20 @@ def publish(complete: Path, target: Path) -> None:
         os.replace(source, place)
 
 
+def published(path: Path) -> Path:
+    """Where a path will lie when the runs that write it have ended; from the present folder if it lies below that.
+
+    A path that no run writes is given back as it is.
+    """
+    for partial in (path.absolute(), *path.absolute().parents):
+        hidden = partial.parent
+        if partial.name == PARTIAL and hidden.name.startswith(HIDDEN):
+            target = hidden.parent / os.fsdecode((hidden / LOCK).read_bytes())
+            place = published(target / path.absolute().relative_to(partial))
+            return place.relative_to(Path.cwd()) if place.is_relative_to(Path.cwd()) else place
+    return path
+
+
 @contextmanager
 def undisturbed() -> Iterator[None]:
     """Hold back SIGINT and SIGTERM until the block has ended."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -40,7 +41,18 @@ def read(
     preferred = () if actuator is None else (actuator.input, actuator.quantity)
     if actuator is not None:
         check_motion(chosen, actuator)
-    return read_recording(path, time=time, signals=chosen, preferred=preferred)
+    found = read_recording(path, time=time, signals=chosen, preferred=preferred)
+    return replace(found, read_with=tuple(options(time, topics or {}, signals)))
+
+
+def options(time: str | None, topics: Mapping[str, str], signals: object) -> Iterator[str]:
+    """The options with which a command reads a recording alike; a signal map that is no file has none."""
+    if isinstance(signals, (str, Path)):
+        yield from ("--signals", str(signals))
+    for signal, name in topics.items():
+        yield from ("--topic", f"{signal}={name}")
+    if time is not None:
+        yield from ("--time", time)
 
 
 def check_motion(chosen: SignalMap, actuator: Actuator) -> None:

@@ -54,7 +54,8 @@ class Recording:
     setpoints [rad]. What was recorded before the first sample has a negative time. Of a linear actuator all of them
     are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
     time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing,
-    `path` where it was read from, `file_times` when its samples lie there.
+    `path` where it was read from and `read_with` with which options of a command, `file_times` when its samples lie
+    there.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Recording:
     input: str = "duty"
     path: Path | None = None
     file_times: FileTimes | None = None
+    read_with: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))

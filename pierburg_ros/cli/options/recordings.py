@@ -39,6 +39,16 @@ TimeOption = Annotated[
     ),
 ]
 
+ResultsOption = Annotated[
+    Path | None,
+    typer.Option(show_default="results/COMMAND/RECORDING", help="Folder for the results."),
+]
+
+
+def results_folder(output: Path | None, command: str, recording: Path) -> Path:
+    """The folder that was named, else that of the `command` and its first recording."""
+    return output or Path("results") / command / recording.absolute().stem
+
 
 def topics_of(options: Sequence[str] | None) -> dict[str, str]:
     """{"duty": "/bench/pwm"} from ["duty=/bench/pwm"]."""
