@@ -39,6 +39,9 @@ class Fleet:
     ageing: tuple[Ageing, ...]
     attention: tuple[Attention, ...]
 
+    def __repr__(self) -> str:
+        return f"Fleet({len(self.recordings)} recordings of {len(self.attention)} units. {self.sentence})"
+
     @property
     def sentence(self) -> str:
         """Which unit to look at first, and why."""

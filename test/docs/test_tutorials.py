@@ -10,7 +10,7 @@ import shutil
 import matplotlib.image
 import numpy as np
 import pytest
-from support.browser import CHROMIUM, DRIVER
+from support.browser import WANTED
 from support.documentation import ROOT, clone, pasted
 from support.snippets import run
 
@@ -43,7 +43,7 @@ def test_my_bag_ends_in_a_model_that_mujoco_runs_to_the_noise(tmp_path):
     pytest.importorskip("mujoco", minversion="3.13")
     holds(pasted("docs/my_bag.md", clone(tmp_path)))
     assert (tmp_path / "results/throttle/report.html").exists()
-    if CHROMIUM and DRIVER:
+    if WANTED:
         the_pictures_of_the_readme_can_be_taken(tmp_path / "results/throttle/report.html", tmp_path)
 
 

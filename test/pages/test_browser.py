@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import matplotlib.image
 import numpy as np
 import pytest
-from support.browser import CHROMIUM, DRIVER, Page, browser
+from support.browser import NEEDS_BROWSER, Page, browser
 from support.reports import LEFT, result
 
 from pierburg_ros.actuators import read_actuator
@@ -20,7 +20,7 @@ from pierburg_ros.pages.page import Sources
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
-pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER), reason="needs chromium and chromedriver on the path")
+pytestmark = NEEDS_BROWSER
 
 TIME = 0.002 * np.arange(5000)
 DRAWN = 0.002

@@ -78,7 +78,8 @@ def clone(folder: Path) -> Path:
             shutil.copy(ROOT / name, folder / name)
     (folder / ".venv").mkdir()
     (folder / ".venv" / "bin").symlink_to(Path(sys.prefix) / "bin")
-    (folder / ".venv" / ".installed").touch()
+    for stamp in (".ready", ".installed"):
+        (folder / ".venv" / stamp).touch()
     return folder
 
 
