@@ -11,7 +11,6 @@ import typer
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import notes
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.model import Model
 
 ToOption = Annotated[str, typer.Option("--to", help="mujoco, urdf, sdf, modelica or json.")]
 
@@ -23,6 +22,8 @@ def export(
 ) -> dict[str, object]:
     """Write a model for another simulator, and say what its format cannot hold."""
     refuse_folder(output)
+    from pierburg_ros.library.model import Model
+
     exported = Model.read(model).export(to)
     exported.write(output)
     console = terminal()

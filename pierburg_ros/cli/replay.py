@@ -20,8 +20,6 @@ from pierburg_ros.cli.options.recordings import (
     topics_of,
 )
 from pierburg_ros.cli.options.viewers import RerunOption
-from pierburg_ros.library.comparing import compare
-from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
 from pierburg_ros.pages.listing import Listing
 
@@ -40,6 +38,9 @@ def replay(
 
     Writes replay.json, replay.csv, replay.mcap, replay.html, replay.png and model.yaml to the output folder.
     """
+    from pierburg_ros.library.comparing import compare
+    from pierburg_ros.library.reading import read
+
     chosen, output = chosen_model(model, actuator), results_folder(output, "replay", recording)
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)

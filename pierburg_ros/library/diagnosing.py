@@ -8,6 +8,7 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.diagnosis import diagnose as diagnosing
 from pierburg_ros.diagnosis.result import Result as Found
 from pierburg_ros.diagnosis.schema import BaseParameter, Estimate
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Progress = Callable[[str], None]
-USUAL_BUDGET = 120.0
-"""Time [s] after which the best verdict yet is given unless told otherwise."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from itertools import takewhile
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pierburg_ros.actuators.description import SHIPPED
 from pierburg_ros.cli.console.terminal import terminal
-from pierburg_ros.library import model as library
-from pierburg_ros.library.model import Model
 
+if TYPE_CHECKING:
+    from pierburg_ros.library.model import Model
+
+SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
+"""Actuators that come with the package, as `actuators.SHIPPED`, which takes a second to load."""
 DEFAULT = "pierburg"
 """The actuator where none is named, for every command."""
 ModelOption = Annotated[Path | None, typer.Option("--model", help="Model file to start from.")]
@@ -29,6 +31,8 @@ def chosen_model(model: Path | None, actuator: str | None) -> Model:
 
     Prints what the file says of itself, as that its diagnosis has concluded nothing.
     """
+    from pierburg_ros.library import model as library
+
     chosen = library.chosen_model(model, actuator if actuator or model else DEFAULT)
     for note in notes(model):
         terminal().print(f"{model}: {note}", soft_wrap=True)
