@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -17,15 +17,13 @@ from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.control import Controller
-from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.library.comparing import Comparison, compare
-from pierburg_ros.library.diagnosing import Diagnosis
-from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.library.reading import read
-from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
+
+if TYPE_CHECKING:
+    from pierburg_ros.library.comparing import Comparison
+    from pierburg_ros.library.diagnosing import Diagnosis
+    from pierburg_ros.library.model import Model
 
 SETPOINTS = (
     (0.0, 0.0), (1.0, 0.35), (4.0, 0.87), (7.0, 1.22), (10.0, 0.61), (13.0, 1.05), (15.0, 1.12), (17.0, 0.98),
@@ -47,6 +45,9 @@ def demo(
     diagnosis sees the recording alone.
     """
     require_ros()
+    from pierburg_ros.diagnosis.report.terminal import shown
+    from pierburg_ros.library.model import Model
+
     console = terminal()
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
@@ -97,6 +98,10 @@ def write_setpoints(path: Path) -> None:
 
 def compile_kernels() -> None:
     """Have the kernels of the nodes in the cache, so that no node has to compile while others wait for it."""
+    from pierburg_ros.control import Controller
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.plant import Plant
+
     Plant(Model.nominal("pierburg")).advance(0.0, 0.002)
     controller = Controller()
     controller.step(0.0, 0.42, 0.002)
@@ -105,6 +110,9 @@ def compile_kernels() -> None:
 
 def diagnosed(folder: Path, recording: Path) -> Diagnosis:
     """Diagnose a recording as a user would, with nothing but its path, and write the files."""
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.library.reading import read
+
     diagnosis = diagnosed_with_progress([read(recording)], Model.nominal("pierburg"))
     diagnosis.save(folder)
     return diagnosis
@@ -112,6 +120,8 @@ def diagnosed(folder: Path, recording: Path) -> Diagnosis:
 
 def replayed(folder: Path, recording: Path, model: Model) -> Comparison:
     """Write the files of a replay and give it."""
+    from pierburg_ros.library.comparing import compare
+
     comparison = compare(recording, model)
     comparison.save(folder)
     return comparison

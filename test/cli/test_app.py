@@ -13,7 +13,7 @@ from pierburg_ros.cli.options.recordings import topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
 
-LATER = {"demo", "experiment", "prove", "tune"}
+LATER = {"experiment", "prove", "tune"}
 """Commands whose help loads what they work with."""
 
 

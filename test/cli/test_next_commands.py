@@ -13,7 +13,9 @@ import pytest
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.library.comparing import compare
 from pierburg_ros.library.output import output_folder, published
+from pierburg_ros.library.reading import read
 from pierburg_ros.plant import Model
 
 MAP = """time: {column: t, unit: ms}
@@ -69,6 +71,20 @@ def test_next_commands_run_as_pasted(bench):
         shutil.rmtree(bench / "replayed", ignore_errors=True)
         run(*words[1:])
     assert json.loads((bench / "again/diagnosis.json").read_text())["verdict"] == "consistent"
+
+
+def test_a_page_names_files_where_they_lie_when_the_run_has_ended(bench):
+    with output_folder(bench / "out") as folder:
+        shutil.copy(bench / "my bench.csv", folder / "run.csv")
+        recording = read(folder / "run.csv", signals="signals.yaml")
+        compare(recording, Model.nominal(read_actuator("pierburg"))).save(folder)
+    (words,) = next_commands(bench / "out/replay.html")
+    assert words[2:] == [
+        *("out/run.csv", "--signals", "signals.yaml"),
+        *("--model", "out/model.yaml", "--output", "diagnosis"),
+    ]
+    assert (bench / words[2]).exists() and (bench / words[6]).exists()
+    assert "partial" not in (bench / "out/replay.html").read_text(encoding="utf-8").split("provenance")[-1]
 
 
 def test_a_recording_that_a_run_writes_is_named_where_it_will_lie(bench):
