@@ -16,7 +16,6 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.metadata import version as installed_version
 from typing import Annotated, Any
 
 import typer
@@ -180,6 +179,8 @@ def summary_only() -> None:
 def print_version(wanted: bool) -> None:
     """Print the installed version and stop, if `wanted`."""
     if wanted:
+        from importlib.metadata import version as installed_version
+
         typer.echo(f"pierburg_ros {installed_version('pierburg_ros')}")
         raise typer.Exit
 
