@@ -2,6 +2,7 @@
 # builds the documentation; all set up .venv first, once.
 VENV := .venv
 BIN := $(VENV)/bin
+READY := $(VENV)/.ready
 STAMP := $(VENV)/.installed
 COLCON := build/colcon
 
@@ -15,15 +16,20 @@ LOWEST_PYTHON := $(shell for name in python3.12 python3.11 python3.10; do \
 
 .PHONY: demo test quick lint types site library nodes colcon lowest alone benchmarks clean
 
-demo: $(STAMP)
+demo: $(READY)
 	$(BIN)/pierburg demo
 
 test: lint types site library nodes colcon
 
-$(STAMP): setup.py pyproject.toml constraints/newest.txt
+# What running takes; the tools of tests and documentation take as much again.
+$(READY): setup.py pyproject.toml constraints/newest.txt
 	@test -n "$(PYTHON)" || { echo "No Python 3.10 to 3.13 with venv found; install one (e.g. python3-venv)."; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet 'setuptools>=70.1'
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,mujoco]' --constraint constraints/newest.txt
+	@touch $@
+
+$(STAMP): $(READY)
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable '.[ros,test,docs]' --constraint constraints/newest.txt
 	@touch $@
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from pierburg_ros.library.identifying import Identification, identify
     from pierburg_ros.library.model import Model
     from pierburg_ros.library.reading import read
+    from pierburg_ros.library.recording import Recording
     from pierburg_ros.library.simulation import Simulation, simulate
-    from pierburg_ros.recording import Recording
 
 __all__ = [
     "Comparison",
@@ -53,7 +53,7 @@ _HOME = {
     "Identification": "library.identifying",
     "InputError": "errors",
     "Model": "library.model",
-    "Recording": "recording",
+    "Recording": "library.recording",
     "Simulation": "library.simulation",
     "compare": "library.comparing",
     "diagnose": "library.diagnosing",
@@ -69,9 +69,13 @@ def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    if not isinstance(value, type):
+        from pierburg_ros.errors import naming_arguments
+
+        value = naming_arguments(value)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

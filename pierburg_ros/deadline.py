@@ -9,6 +9,8 @@ from typing import TypeVar
 
 Result = TypeVar("Result")
 
+USUAL_BUDGET = 120.0
+"""Time [s] after which the best verdict yet of a diagnosis is given unless told otherwise."""
 SLOWEST = 5.0
 """How many times longer than on an idle machine a deadline may be put off. Chosen: eight busy processes beside the two
 threads of a diagnosis leave them two fifths of a core, 2.5 times as long for as much work; not varied."""

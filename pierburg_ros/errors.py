@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import re
+from collections.abc import Callable, Collection
 from difflib import get_close_matches
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+Given = ParamSpec("Given")
+Found = TypeVar("Found")
 
 LONGEST = 285
 """Characters of a message at most: with the command's name before it, 300, which four lines of a terminal hold."""
 TAIL = 110
 """Characters of its end that a shortened message keeps: what to do stands there."""
+
+ARGUMENTS = {"topic": "topics", "fix": "fixed", "limit": "limits"}
+"""Arguments of the Python interface that are not called as the option of a command is."""
 
 MOST_COMPARED = 1000
 """Names that are compared with one that is wrong: more would take long and help nobody."""
@@ -20,6 +29,25 @@ class InputError(ValueError):
     def __init__(self, *messages: str) -> None:
         """Of several messages each is a line of its own."""
         super().__init__("\n".join(one_line(message) for message in messages))
+
+
+def naming_arguments(function: Callable[Given, Found]) -> Callable[Given, Found]:
+    """`function`, whose InputErrors name arguments where those of a command name options."""
+
+    @wraps(function)
+    def called(*arguments: Given.args, **named: Given.kwargs) -> Found:
+        try:
+            return function(*arguments, **named)
+        except InputError as error:
+            raise InputError(by_argument(str(error))) from None
+
+    return called
+
+
+def by_argument(message: str) -> str:
+    """`--topic duty=/pwm` as `topics={'duty': '/pwm'}`, any other `--option` as the argument in backquotes."""
+    text = re.sub(r"--topic (\w+)=([^\s.;,]+)", r"topics={'\1': '\2'}", message)
+    return re.sub(r"--([a-z][a-z-]*)", lambda found: f"`{ARGUMENTS.get(found[1], found[1].replace('-', '_'))}`", text)
 
 
 def one_line(text: str) -> str:

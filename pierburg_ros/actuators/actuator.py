@@ -89,6 +89,9 @@ class Actuator:
     description: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
     """The content of the user's own file that describes it; None where the package ships it, or code made it."""
 
+    def __repr__(self) -> str:
+        return f"Actuator({self.name}: {self.title})"
+
     @property
     def input(self) -> Input:
         """What drives it, as recordings call it."""

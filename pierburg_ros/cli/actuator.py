@@ -6,27 +6,22 @@ import math
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
-from pierburg_ros.actuators import Actuator, read_actuator
-from pierburg_ros.actuators.writing import description_text
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.description.derived import derived
-from pierburg_ros.identification.description.questions import Question, answered
-from pierburg_ros.identification.description.recorded import alike, identified
-from pierburg_ros.identification.description.slips import remarks
-from pierburg_ros.identification.description.told import told
 from pierburg_ros.library.output import write_whole
-from pierburg_ros.library.reading import read
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.pages.numbers import number, unit
-from pierburg_ros.plant import Model
+
+if TYPE_CHECKING:
+    from pierburg_ros.actuators import Actuator
+    from pierburg_ros.identification.description.questions import Question
 
 
 class Action(str, Enum):
@@ -60,9 +55,16 @@ def actuator(
         return check(console, file)
     if file.exists() and not overwrite:
         raise InputError(f"{file} is there already, expected a new file. Name another one, or add --overwrite.")
+    from pierburg_ros.actuators import read_actuator
+    from pierburg_ros.actuators.writing import description_text
+    from pierburg_ros.identification.description.questions import answered
+
     if from_recording is None:
         content = answered(asked)
     else:
+        from pierburg_ros.identification.description.recorded import alike, identified
+        from pierburg_ros.library.reading import read
+
         start = None if like is None else read_actuator(like)
         recording = read(from_recording, time=time, topics=topics_of(topic), signals=signals, actuator=start)
         if start is None:
@@ -103,6 +105,12 @@ def asked(question: Question, problem: str) -> str:
 
 def check(console: Console, file: Path) -> dict[str, object]:
     """Print and give derived numbers, remarks, and what a standard excitation of the description would tell."""
+    from pierburg_ros.actuators import read_actuator
+    from pierburg_ros.identification.description.derived import derived
+    from pierburg_ros.identification.description.slips import remarks
+    from pierburg_ros.identification.description.told import told
+    from pierburg_ros.plant import Model
+
     described = read_actuator(str(file))
     numbers, found = derived(described), remarks(described)
     rows = [(each.name, number(each.value) + unit(each.unit), "yes" if each.plausible else "NO") for each in numbers]

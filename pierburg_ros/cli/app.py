@@ -16,7 +16,6 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.metadata import version as installed_version
 from typing import Annotated, Any
 
 import typer
@@ -94,7 +93,7 @@ COMMANDS = {
     "diagnose": Command(
         "Locate a mismatch, name the missing physics, model it, show the fit improve.",
         examples=(
-            "pierburg diagnose run.mcap -o diagnosis",
+            "pierburg diagnose run.mcap",
             "pierburg diagnose a.mcap b.mcap --actuator my.yaml -o d",
             "pierburg diagnose run.mcap --simulation sim.mcap -o out",
             "pierburg diagnose run.mcap -o out --json > found.json",
@@ -180,6 +179,8 @@ def summary_only() -> None:
 def print_version(wanted: bool) -> None:
     """Print the installed version and stop, if `wanted`."""
     if wanted:
+        from importlib.metadata import version as installed_version
+
         typer.echo(f"pierburg_ros {installed_version('pierburg_ros')}")
         raise typer.Exit
 

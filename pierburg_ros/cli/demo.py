@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -17,17 +17,14 @@ from pierburg_ros.cli.diagnose import diagnosed_with_progress
 from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
-from pierburg_ros.control import Controller
-from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.library.comparing import Comparison, compare
-from pierburg_ros.library.diagnosing import Diagnosis
-from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.library.reading import read
 from pierburg_ros.nodes.core.depth import KEPT
-from pierburg_ros.pages.listing import Listing
-from pierburg_ros.plant import Plant
 from pierburg_ros.processes import own_graph, running
+
+if TYPE_CHECKING:
+    from pierburg_ros.library.comparing import Comparison
+    from pierburg_ros.library.diagnosing import Diagnosis
+    from pierburg_ros.library.model import Model
 
 SETPOINTS = (
     (0.0, 0.0), (1.0, 0.35), (4.0, 0.87), (7.0, 1.22), (10.0, 0.61), (13.0, 1.05), (15.0, 1.12), (17.0, 0.98),
@@ -38,20 +35,20 @@ CONCEALED = Path(str(resources.files("pierburg_ros.cli") / "demo.yaml"))
 """Model file of the second run's plant: what it has and the diagnosis is not told."""
 NOISE = 0.003
 """Standard deviation of the simulated sensor's noise [V]; guess, 1.5 steps of a 12-bit converter."""
-REAL_RUNS = Path("../shared/data/xl330")
 
 
 def demo(
     output: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("results/demo"),
-    real: Annotated[Path, typer.Option(help="Folder with measured runs of the XL330 bench.")] = REAL_RUNS,
 ) -> dict[str, object]:
     """Close a loop over ROS, record it, replay it; conceal an effect, record again, and have it diagnosed.
 
-    The first run is replayed against the true model. Measured runs of a real bench, where there are any, are replayed
-    against a simple one. In the second run the plant sticks and its spring has drifted; the diagnosis sees the
-    recording alone.
+    The first run is replayed against the true model. In the second run the plant sticks and its spring has drifted; the
+    diagnosis sees the recording alone.
     """
     require_ros()
+    from pierburg_ros.diagnosis.report.terminal import shown
+    from pierburg_ros.library.model import Model
+
     console = terminal()
     with output_folder(output) as folder:
         recording = recorded_run(folder, "demo.mcap", {}, False, console)
@@ -60,11 +57,6 @@ def demo(
         concealed = recorded_run(folder, "concealed.mcap", {"model": str(CONCEALED)}, True, console)
         diagnosis = diagnosed(folder / "diagnosis", concealed)
         console.print(f"{concealed.name} and nothing else, diagnosed:", shown(diagnosis.document))
-        runs = sorted(real.glob("*.mcap"))
-        if runs:
-            console.print(replayed_bench(folder / "xl330", runs))
-        else:
-            console.print(f"No measured runs in {real}; name a folder with --real to replay them too.")
     files = "replay.html (the loop), diagnosis/report.html (the concealed effect)"
     console.print(f"Results in {output}: {files}.", soft_wrap=True)
     return {"replay": json.loads(comparison.to_json()), "diagnosis": json.loads(diagnosis.to_json())}
@@ -109,6 +101,10 @@ def write_setpoints(path: Path) -> None:
 
 def compile_kernels() -> None:
     """Have the kernels of the nodes in the cache, so that no node has to compile while others wait for it."""
+    from pierburg_ros.control import Controller
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.plant import Plant
+
     Plant(Model.nominal("pierburg")).advance(0.0, 0.002)
     controller = Controller()
     controller.step(0.0, 0.42, 0.002)
@@ -117,6 +113,9 @@ def compile_kernels() -> None:
 
 def diagnosed(folder: Path, recording: Path) -> Diagnosis:
     """Diagnose a recording as a user would, with nothing but its path, and write the files."""
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.library.reading import read
+
     diagnosis = diagnosed_with_progress([read(recording)], Model.nominal("pierburg"))
     diagnosis.save(folder)
     return diagnosis
@@ -124,26 +123,8 @@ def diagnosed(folder: Path, recording: Path) -> Diagnosis:
 
 def replayed(folder: Path, recording: Path, model: Model) -> Comparison:
     """Write the files of a replay and give it."""
+    from pierburg_ros.library.comparing import compare
+
     comparison = compare(recording, model)
     comparison.save(folder)
     return comparison
-
-
-def replayed_bench(folder: Path, runs: list[Path]) -> Listing:
-    """Replay measured runs of the pendulum bench against its Coulomb-and-viscous model, one row each."""
-    model = Model.nominal("xl330")
-    rows = []
-    for run in runs:
-        comparison = compare(run, model)
-        comparison.save(folder / run.stem)
-        rows.append(bench_row(run, comparison))
-    headings = ("run", "RMSE [rad]", "variance explained", "worst stretch [s]")
-    return Listing(headings, rows, f"real runs and {model.actuator.name} with {', '.join(model.active_effects)}")
-
-
-def bench_row(run: Path, comparison: Comparison) -> tuple[str, ...]:
-    """One row of the table of measured runs."""
-    explained, worst = comparison.found.variance_explained, comparison.found.worst
-    share = "nothing moved" if explained is None else f"{100 * explained:.1f} %"
-    stretch = f"{worst.start:.2f} to {worst.end:.2f}"
-    return run.stem, f"{comparison.rmse:.3f}", share, stretch

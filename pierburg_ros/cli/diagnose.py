@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,17 +14,23 @@ from pierburg_ros.cli.console.progress import Step, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
-from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.cli.options.recordings import (
+    ResultsOption,
+    SignalsOption,
+    TimeOption,
+    TopicOption,
+    results_folder,
+    topics_of,
+)
 from pierburg_ros.cli.options.viewers import RerunOption
-from pierburg_ros.diagnosis.report.terminal import shown
-from pierburg_ros.diagnosis.search.tried import Tried
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.diagnosing import USUAL_BUDGET, Diagnosis
-from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
-from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.library.reading import read
-from pierburg_ros.recording import Recording
+
+if TYPE_CHECKING:
+    from pierburg_ros.library.diagnosing import Diagnosis
+    from pierburg_ros.library.model import Model
+    from pierburg_ros.recording import Recording
 
 DRAWING = ("pierburg_ros.diagnosis.report.page", "pierburg_ros.diagnosis.report.picture")
 """Modules that only the results need."""
@@ -32,7 +38,7 @@ DRAWING = ("pierburg_ros.diagnosis.report.page", "pierburg_ros.diagnosis.report.
 
 def diagnose(
     recordings: Annotated[list[Path], typer.Argument(help="MCAP, rosbag2 directories or CSV, of one actuator.")],
-    output: Annotated[Path, typer.Option(help="Folder for the results.")],
+    output: ResultsOption = None,
     simulation: Annotated[
         list[Path] | None,
         typer.Option(
@@ -59,7 +65,10 @@ def diagnose(
     Writes diagnosis.json, model.yaml, report.html, overview.png and diagnosis.mcap (for Foxglove and PlotJuggler,
     beside the recording) to the output folder. Ctrl-C gives the best verdict yet.
     """
-    nominal = chosen_model(model, actuator)
+    from pierburg_ros.diagnosis.report.terminal import shown
+    from pierburg_ros.library.reading import read
+
+    nominal, output = chosen_model(model, actuator), results_folder(output, "diagnose", recordings[0])
     if simulation_signals and not simulation:
         raise InputError("Found --simulation-signals without --simulation. Name the recordings of your simulator.")
 
@@ -98,6 +107,9 @@ def diagnosed_with_progress(
     force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
+    from pierburg_ros.diagnosis.search.tried import Tried
+    from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
+
     with progress() as show:
 
         def tell(what: str) -> None:

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.cli.console.terminal import terminal
+from pierburg_ros.cli.options.models import notes
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.model import Model
 
 ToOption = Annotated[str, typer.Option("--to", help="mujoco, urdf, sdf, modelica or json.")]
 
@@ -22,17 +22,20 @@ def export(
 ) -> dict[str, object]:
     """Write a model for another simulator, and say what its format cannot hold."""
     refuse_folder(output)
+    from pierburg_ros.library.model import Model
+
     exported = Model.read(model).export(to)
     exported.write(output)
     console = terminal()
-    for note in exported.notes:
+    said = [*notes(model), *exported.notes]
+    for note in said:
         console.print(note, soft_wrap=True, markup=False)
     if exported.left_out:
         console.print(f"Left out, since {to} has no place for it (the file lists it too):")
         for each in exported.left_out:
             console.print(f"  {each}", soft_wrap=True, markup=False)
     console.print(f"Written to {output}", soft_wrap=True, markup=False)
-    return {"file": str(output), "format": to, "notes": exported.notes, "left_out": exported.left_out}
+    return {"file": str(output), "format": to, "notes": said, "left_out": exported.left_out}
 
 
 def refuse_folder(output: Path) -> None:

@@ -13,9 +13,8 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption, SchedulerOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
-from pierburg_ros.fleets.fleet import fleet as fleet_found
-from pierburg_ros.library.diagnosing import USUAL_BUDGET
 
 
 def fleet(
@@ -48,6 +47,8 @@ def fleet(
     Writes recordings.parquet, findings.parquet, ageing.parquet, fleet.json and fleet.html to the output folder, and the
     report of each recording below it. Called again it diagnoses only what is new.
     """
+    from pierburg_ros.fleets.fleet import fleet as fleet_found
+
     limits = limits_of(limit)
     with progress() as show:
 

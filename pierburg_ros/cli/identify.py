@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -14,32 +14,25 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.options.recordings import (
+    ResultsOption,
     SignalsOption,
     TimeOption,
     TopicOption,
     faults_first,
     losses_first,
+    results_folder,
     topics_of,
 )
 from pierburg_ros.errors import InputError
-from pierburg_ros.identification.identify import Identification
-from pierburg_ros.identification.paper.table_one import audit as audit_checks
-from pierburg_ros.identification.table import (
-    audit_lines,
-    lump_table,
-    paper_table,
-    parameter_table,
-    reasons,
-)
-from pierburg_ros.library import identifying
-from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.library.reading import read, taken_up
+
+if TYPE_CHECKING:
+    from pierburg_ros.identification.identify import Identification
 
 
 def identify(
     recordings: Annotated[list[Path] | None, typer.Argument(help="MCAP, rosbag2 directories or CSV.")] = None,
-    output: Annotated[Path | None, typer.Option(help="Folder for the results.")] = None,
+    output: ResultsOption = None,
     actuator: ActuatorOption = None,
     model: ModelOption = None,
     free: Annotated[
@@ -58,16 +51,20 @@ def identify(
     """
     console = terminal()
     if audit:
+        from pierburg_ros.identification.paper.table_one import audit as audit_checks
+        from pierburg_ros.identification.table import audit_lines
+        from pierburg_ros.library.model import Model
+
         checks = audit_checks(Model.nominal("pierburg"))
         console.print("\n".join(audit_lines(checks)), soft_wrap=True)
         if not recordings:
             return {"audit": [asdict(check) for check in checks]}
-    if not recordings or output is None:
-        raise InputError(
-            "identify found no recording or no --output, expected both, or --audit. Write pierburg identify"
-            " run.mcap --output DIR."
-        )
-    start = chosen_model(model, actuator)
+    if not recordings:
+        raise InputError("identify found no recording, expected one, or --audit. Write pierburg identify run.mcap.")
+    from pierburg_ros.library import identifying
+    from pierburg_ros.library.reading import read, taken_up
+
+    start, output = chosen_model(model, actuator), results_folder(output, "identify", recordings[0])
     measured = [
         read(path, time=time, topics=topics_of(topic), signals=signals, actuator=start.actuator) for path in recordings
     ]
@@ -87,6 +84,8 @@ def identify(
 
 def print_results(console: Console, found: Identification, output: Path) -> None:
     """Print the tables and the quality of the fit."""
+    from pierburg_ros.identification.table import lump_table, paper_table, parameter_table, reasons
+
     for table in (lump_table(found), parameter_table(found), paper_table(found)):
         if table is not None:
             console.print(table)

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 
-from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.pages.listing import Listing
-from pierburg_ros.plant import Model
-from pierburg_ros.recording.inspection import Inspection, TopicContent
-from pierburg_ros.recording.inspection import inspect as inspected
+
+if TYPE_CHECKING:
+    from pierburg_ros.recording.inspection import Inspection, TopicContent
 
 FIELDS = 12
 """Numbers of a topic that are listed; all are in the JSON."""
@@ -38,6 +37,8 @@ def inspect(
 
     --write-signals FILE writes a signal map with these guesses, which every command takes with --signals.
     """
+    from pierburg_ros.recording.inspection import inspect as inspected
+
     found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
     if write_signals is not None:
         write(write_signals, found.signals)
@@ -55,6 +56,9 @@ def shown(
     console.print("\n".join(numbers(found, mapped)), soft_wrap=True)
     console.print(read_as(found), soft_wrap=True)
     if found.recording is not None and actuator is not None:
+        from pierburg_ros.actuators import read_actuator
+        from pierburg_ros.plant import Model
+
         faults_first(console, [found.recording], Model.nominal(read_actuator(actuator)))
     if written is not None:
         console.print(

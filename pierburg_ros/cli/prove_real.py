@@ -13,8 +13,8 @@ from pierburg_ros.cli.console.progress import Step, Tell, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import chosen_model
 from pierburg_ros.cli.options.recordings import topics_of
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.reading import read
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.proof.real import document, run

@@ -8,8 +8,6 @@ from typing import Annotated
 import typer
 
 from pierburg_ros.cli.console.terminal import terminal
-from pierburg_ros.recording.formats.recover import is_whole
-from pierburg_ros.recording.formats.recover import recover as recovered_copy
 
 
 def recover(
@@ -22,6 +20,9 @@ def recover(
 
     Every message that is there in full is kept, with its times, types, and quality of service.
     """
+    from pierburg_ros.recording.formats.recover import is_whole
+    from pierburg_ros.recording.formats.recover import recover as recovered_copy
+
     console = terminal()
     if is_whole(recording):
         console.print(f"{recording} is whole; nothing was written.", soft_wrap=True)

@@ -10,23 +10,23 @@ import typer
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.options.recordings import (
+    ResultsOption,
     SignalsOption,
     TimeOption,
     TopicOption,
     faults_first,
     losses_first,
+    results_folder,
     topics_of,
 )
 from pierburg_ros.cli.options.viewers import RerunOption
-from pierburg_ros.library.comparing import compare
-from pierburg_ros.library.reading import read
 from pierburg_ros.library.result import Result
 from pierburg_ros.pages.listing import Listing
 
 
 def replay(
     recording: Annotated[Path, typer.Argument(help="MCAP, rosbag2 directory or CSV.")],
-    output: Annotated[Path, typer.Option(help="Folder for the results.")],
+    output: ResultsOption = None,
     model: ModelOption = None,
     actuator: ActuatorOption = None,
     signals: SignalsOption = None,
@@ -36,9 +36,12 @@ def replay(
 ) -> str:
     """Simulate a recorded duty and compare with what was measured.
 
-    Writes replay.json, replay.csv, replay.mcap, replay.html and replay.png to the output folder.
+    Writes replay.json, replay.csv, replay.mcap, replay.html, replay.png and model.yaml to the output folder.
     """
-    chosen = chosen_model(model, actuator)
+    from pierburg_ros.library.comparing import compare
+    from pierburg_ros.library.reading import read
+
+    chosen, output = chosen_model(model, actuator), results_folder(output, "replay", recording)
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
     comparison = compare(measured, chosen)
     comparison.save(output)
@@ -48,7 +51,7 @@ def replay(
     losses_first(console, [measured])
     faults_first(console, [measured], chosen)
     console.print(summary(comparison))
-    console.print(f"Results in {output}: replay.html, .png, .json, .csv, .mcap", soft_wrap=True)
+    console.print(f"Results in {output}: replay.html, .png, .json, .csv, .mcap, model.yaml", soft_wrap=True)
     return comparison.to_json()
 
 

@@ -11,7 +11,6 @@ import typer
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.errors import InputError
-from pierburg_ros.library import simulation
 
 
 def simulate(
@@ -36,6 +35,8 @@ def simulate(
         raise InputError("Expected either --duty (open loop) or --setpoints (closed loop). Give one of them.")
     if duty is not None and controller is not None:
         raise InputError("Found --controller with --duty, which runs without a controller. Leave one out.")
+    from pierburg_ros.library import simulation
+
     chosen = chosen_model(model, actuator)
     began = time.perf_counter()
     made = simulation.simulate(

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.plot import drawn_input, figure
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.pages.page import Plot, command, written
+from pierburg_ros.pages.page import NOT_FILES, Plot, Sources, written
 from pierburg_ros.pages.room import page_signals
 from pierburg_ros.plant import Model
 
@@ -18,9 +17,9 @@ def replay_page(
     comparison: Comparison,
     rows: Mapping[str, str],
     provenance: Sequence[tuple[str, str]] = (),
-    sources: Sequence[Path] = (),
+    sources: Sources = NOT_FILES,
 ) -> str:
-    """The page as HTML; `rows` are the main numbers in words, `sources` the file of the recording, for commands."""
+    """The page as HTML; `rows` are the main numbers in words; `sources` for commands to copy."""
     recording = comparison.recording
     signals = {
         "time": recording.time,
@@ -43,7 +42,7 @@ def replay_page(
         context,
         model_file=comparison.model.text(),
         model_said="The model that was simulated.",
-        commands=commands(sources),
+        commands=sources.commands(("Ask what the model lacks", "diagnose", "diagnosis")),
         provenance=provenance,
     )
 
@@ -60,11 +59,3 @@ def parameter_rows(model: Model) -> list[tuple[str, float, float, str]]:
             name = f"{effect}.{parameter.name}"
             rows.append((name, model.values[name], nominal.values[name], unit_of(parameter.unit, actuator.motion)))
     return rows
-
-
-def commands(sources: Sequence[Path]) -> list[dict[str, str]]:
-    """What to run next where model and recording part."""
-    if not sources:
-        return []
-    line = ["pierburg", "diagnose", *map(str, sources), "--model", "model.yaml", "--output", "diagnosis"]
-    return [command("Save the model file above as model.yaml and ask what it lacks", line)]

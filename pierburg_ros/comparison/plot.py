@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from pierburg_ros.actuators.wording import drawn_factor, input_title, quantity_title
 from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.pages.over_time import Curve, Panel, Span, over_time
+from pierburg_ros.pages.over_time import Curve, Panel, Span, over_time, thinned
 from pierburg_ros.recording import Recording
 
 COLOURS = {"measured": "#7f7f7f", "simulated": "#d62728", "residual": "#1f77b4", "input": "#2ca02c"}
@@ -74,13 +74,13 @@ def picture(comparison: Comparison) -> Figure:
         ("measured", recording.measured, "-"),
         ("simulated", comparison.simulated, "--"),
     ):
-        signal.plot(recording.time, values, style, color=COLOURS[name], linewidth=1.2, label=name)
+        signal.plot(*thinned(recording.time, values), style, color=COLOURS[name], linewidth=1.2, label=name)
     signal.legend(loc="upper right", fontsize=8)
-    residual.plot(recording.time, comparison.residual, color=COLOURS["residual"], linewidth=0.8)
+    residual.plot(*thinned(recording.time, comparison.residual), color=COLOURS["residual"], linewidth=0.8)
     worst = comparison.worst
     residual.axvspan(worst.start, worst.end, color="orange", alpha=0.2, label="worst stretch")
     residual.legend(loc="upper right", fontsize=8)
-    driving.step(recording.time, drawn_input(recording), where="post", color=COLOURS["input"], linewidth=0.8)
+    driving.step(*thinned(recording.time, drawn_input(recording)), where="post", color=COLOURS["input"], linewidth=0.8)
     signal.set_ylabel(quantity_title(recording.quantity, comparison.unit))
     residual.set_ylabel(f"residual [{comparison.unit}]")
     driving.set_ylabel(input_title(recording.input, comparison.model.actuator.motion))

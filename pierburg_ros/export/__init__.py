@@ -29,7 +29,7 @@ def export(model: Model, to: str) -> Exported:
     """`model` in a format of `FORMATS`; InputError where there is none of that name."""
     if to not in FORMATS:
         raise InputError(
-            f"There is no format {to}; expected {', '.join(FORMATS)}.{near(to, FORMATS)} Choose one with --to."
+            f"There is no format {to}; expected {', '.join(FORMATS)}.{near(to, FORMATS)} Choose one of those."
         )
     contents = Contents(model)
     return contents.exported(FORMATS[to](contents))

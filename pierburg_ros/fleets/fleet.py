@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.errors import InputError, near
 from pierburg_ros.fleets.ageing.ageing import Ageing, ageing
@@ -19,7 +20,6 @@ from pierburg_ros.fleets.run import Examined, Report, Where, conduct
 from pierburg_ros.fleets.store import Store
 from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows, require_parquet, write_parquet
 from pierburg_ros.fleets.task import Task
-from pierburg_ros.library.diagnosing import USUAL_BUDGET
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole
 from pierburg_ros.library.tables import data_frame
@@ -38,6 +38,9 @@ class Fleet:
     recordings: tuple[Examined, ...]
     ageing: tuple[Ageing, ...]
     attention: tuple[Attention, ...]
+
+    def __repr__(self) -> str:
+        return f"Fleet({len(self.recordings)} recordings of {len(self.attention)} units. {self.sentence})"
 
     @property
     def sentence(self) -> str:

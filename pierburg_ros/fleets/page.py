@@ -9,8 +9,8 @@ from typing import Any
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.fleets.ageing.ageing import Ageing
-from pierburg_ros.fleets.ageing.attention import KINDS, Attention, day
-from pierburg_ros.fleets.ageing.course import DAY, moment
+from pierburg_ros.fleets.ageing.attention import KINDS, Attention, day, named
+from pierburg_ros.fleets.ageing.course import DAY, in_time, latest, moment
 from pierburg_ros.fleets.run import Examined
 from pierburg_ros.fleets.store import RECORDINGS
 from pierburg_ros.pages.numbers import words
@@ -56,15 +56,15 @@ def fleet_page(
 def unit_row(rank: int, each: Attention, own: Sequence[Examined]) -> dict[str, Any]:
     """A unit as a row of the table."""
     dated = sorted(when for recording in own if (when := moment(recording)) is not None)
-    verdicts = [recording.result["verdict"] for recording in own if not recording.problem]
+    last = latest(own)
     return {
         "rank": rank,
         "unit": each.unit,
         "kind": each.kind,
         "why": each.why,
         "recordings": len(own),
-        "unusable": len(own) - len(verdicts),
-        "verdict": words(verdicts[-1]) if verdicts else "none",
+        "unusable": sum(recording.problem is not None for recording in own),
+        "verdict": words(last.result["verdict"]) if last else "none",
         "last": f"{dated[-1]:%Y-%m-%d}" if dated else "",
     }
 
@@ -77,26 +77,13 @@ def detail(own: Sequence[Examined], courses: Sequence[Ageing]) -> dict[str, Any]
                 f"{when:%Y-%m-%d %H:%M}" if (when := moment(each)) else "",
                 each.source.path.rpartition("/")[2],
                 each.problem or words(each.result["verdict"]),
-                "" if each.problem else _named(each),
+                "" if each.problem else named(each).removeprefix(": "),
                 "" if each.problem else f"{RECORDINGS}/{each.key}/report.html",
             ]
-            for each in sorted(own, key=_when)
+            for each in in_time(own)
         ],
         "courses": [course(each) for each in courses],
     }
-
-
-def _when(each: Examined) -> float:
-    found = moment(each)
-    return 0.0 if found is None else found.timestamp()
-
-
-def _named(each: Examined) -> str:
-    found = each.result["findings"]
-    names = [
-        f["name"].partition(".")[0] if f["kind"] == "effect" else f["name"] for f in found if f["kind"] != "ruled_out"
-    ]
-    return ", ".join(words(name) for name in dict.fromkeys(names))
 
 
 def course(each: Ageing) -> dict[str, Any]:

@@ -26,7 +26,7 @@ class Store:
 
     def __init__(self, output: Path) -> None:
         if output.exists() and not output.is_dir():
-            raise InputError(f"{output} is a file, expected a folder for the fleet. Choose another --output.")
+            raise InputError(f"{output} is a file, expected a folder for the fleet. Choose another folder.")
         self.folder = output / RECORDINGS
         self.folder.mkdir(parents=True, exist_ok=True)
 

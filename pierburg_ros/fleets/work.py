@@ -59,11 +59,12 @@ def examined(source: Source, task: Task, known: frozenset[str] = frozenset()) ->
 
 def _files(found: Diagnosis) -> dict[str, str]:
     """The files of a diagnosis, the report without the plotting library."""
+    from pierburg_ros.diagnosis.report.model_file import model_text
     from pierburg_ros.diagnosis.report.page import page
     from pierburg_ros.library.origin import origin
 
     report = page(found.found, *origin(found.model.actuator, found.recordings), library_at=LIBRARY)
-    return {"diagnosis.json": found.to_json(), "model.yaml": found.model.text(), "report.html": report}
+    return {"diagnosis.json": found.to_json(), "model.yaml": model_text(found.found), "report.html": report}
 
 
 def _said(found: Diagnosis, recording: Recording) -> dict[str, Any]:

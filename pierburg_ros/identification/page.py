@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.plot import correlation_figure, figure, offsets, signals_of, static_figure
-from pierburg_ros.pages.page import Plot, command, written
+from pierburg_ros.pages.page import NOT_FILES, Plot, Sources, written
 from pierburg_ros.pages.room import page_signals
 from pierburg_ros.recording import Recording
 
@@ -17,9 +16,9 @@ def identification_page(
     found: Identification,
     recordings: Sequence[Recording],
     provenance: Sequence[tuple[str, str]] = (),
-    sources: Sequence[Path] = (),
+    sources: Sources = NOT_FILES,
 ) -> str:
-    """The page as HTML; `sources` are the files of the recordings, for commands."""
+    """The page as HTML; `sources` for commands to copy."""
     content = found.as_mapping()
     starts = offsets(recordings)
     context = {
@@ -42,7 +41,10 @@ def identification_page(
         page_signals([signals_of(found, recordings)], ("measured", "residual")),
         context,
         model_file=found.fitted.model.text(),
-        commands=commands(sources),
+        commands=sources.commands(
+            ("See the identified model beside a recording", "replay", "replayed"),
+            ("Ask what the identified model lacks", "diagnose", "diagnosis"),
+        ),
         provenance=provenance,
     )
 
@@ -66,20 +68,3 @@ def state_plots(found: Identification) -> list[Plot]:
         caption = "Correlation of the fitted values: 1 or -1 where only a combination of two is known"
         plots.append(Plot("correlation", correlation_figure(found), caption, 420))
     return plots
-
-
-def commands(sources: Sequence[Path]) -> list[dict[str, str]]:
-    """Commands to run next with the identified model."""
-    if not sources:
-        return []
-    first = str(sources[0])
-    return [
-        command(
-            "See the identified model beside a recording",
-            ["pierburg", "replay", first, "--model", "model.yaml", "--output", "replayed"],
-        ),
-        command(
-            "Ask what the identified model lacks",
-            ["pierburg", "diagnose", first, "--model", "model.yaml", "--output", "diagnosis"],
-        ),
-    ]

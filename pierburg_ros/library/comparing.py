@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison(Result):
     """A recording beside the answer of a model to its inputs; `found` has all the numbers."""
 
@@ -114,7 +114,7 @@ class Comparison(Result):
         }
 
     def write_into(self, folder: Path) -> None:
-        """Write replay.json, .csv, .mcap, .html and .png."""
+        """Write replay.json, .csv, .mcap, .html and .png, and the model as model.yaml."""
         from pierburg_ros.comparison.page import replay_page
         from pierburg_ros.library.origin import origin
 
@@ -123,7 +123,9 @@ class Comparison(Result):
         table, header = np.column_stack(list(columns.values())), ",".join(columns)
         np.savetxt(folder / "replay.csv", table, fmt="%.9g", delimiter=",", header=header, comments="")
         write_mcap(folder / "replay.mcap", overlays.of_comparison(self.found))
-        page = replay_page(self.found, self.rows(), *origin(self.model.actuator, [self.recording]))
+        model = folder / "model.yaml"
+        self.model.write(model)
+        page = replay_page(self.found, self.rows(), *origin(self.model.actuator, [self.recording], model))
         (folder / "replay.html").write_text(page, encoding="utf-8")
         self.picture().savefig(folder / "replay.png", dpi=120)
 

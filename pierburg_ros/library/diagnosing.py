@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 
+from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.diagnosis import diagnose as diagnosing
 from pierburg_ros.diagnosis.result import Result as Found
 from pierburg_ros.diagnosis.schema import BaseParameter, Estimate
@@ -27,11 +29,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Progress = Callable[[str], None]
-USUAL_BUDGET = 120.0
-"""Time [s] after which the best verdict yet is given unless told otherwise."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Diagnosis(Result):
     """The verdict on recordings; `document` has every field of diagnosis.json, `found` the signals as well."""
 
@@ -115,12 +115,14 @@ class Diagnosis(Result):
 
         Of several recordings they are diagnosis_1.mcap and so on, in their order; none where nothing is concluded.
         """
+        from pierburg_ros.diagnosis.report.model_file import model_text
         from pierburg_ros.diagnosis.report.page import write_page
         from pierburg_ros.library.origin import origin
 
         self.document.write(folder / "diagnosis.json")
-        self.model.write(folder / "model.yaml")
-        write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings))
+        model = folder / "model.yaml"
+        model.write_text(model_text(self.found), encoding="utf-8")
+        write_page(folder / "report.html", self.found, *origin(self.model.actuator, self.recordings, model))
         self.picture().savefig(folder / "overview.png", dpi=110)
         laid = overlays.of_diagnosis(self.found, self.recordings)
         for number, overlay in enumerate(laid, 1):
@@ -148,11 +150,10 @@ def diagnose(
     Recordings of one actuator or their paths; compared with `model`, or with `actuator` as described (by default
     the Pierburg valve). Recordings that your own simulator made of the same actuator, as `simulation`, stand for the
     model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
-    words what is being tried. `jobs` is the number of fits at a time, by default one for each core. Takes seconds to
-    minutes: after `budget` [s] of an idle machine, or Ctrl-C, the best verdict yet is given and marked as such; None
-    takes what it takes.
-    Where signals are not what they are read as, nothing is concluded, and `document.input_faults` says so; `force` goes
-    on. InputError where a recording cannot be used.
+    words what is being tried, one call at a time. `jobs` is the number of fits at a time, by default one for each core.
+    Takes seconds to minutes: after `budget` [s] of an idle machine, or Ctrl-C, the best verdict yet is given and marked
+    as such; None takes what it takes. Where signals are not what they are read as, nothing is concluded, and
+    `document.input_faults` says so; `force` goes on. InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
         print(diagnosis.verdict, diagnosis.effects)
@@ -161,7 +162,18 @@ def diagnose(
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = recordings_of(recordings, nominal.actuator)
     simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
-    tell = progress or (lambda _: None)
+    tell = one_at_a_time(progress or (lambda _: None))
     with one_thread():
         found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
     return Diagnosis(found, (*measured, *simulated))
+
+
+def one_at_a_time(progress: Progress) -> Progress:
+    """`progress` for several threads: the others wait while it is told something."""
+    lock = Lock()
+
+    def tell(what: str) -> None:
+        with lock:
+            progress(what)
+
+    return tell

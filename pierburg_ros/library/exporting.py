@@ -19,6 +19,9 @@ class Export:
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return f"Export({len(self.text)} characters, {len(self.left_out)} numbers left out)"
+
     @staticmethod
     def of(exported: Exported) -> Export:
         """What an export says, in words."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Identification(Result):
     """The parameters that recordings show, with intervals; `found` has all the numbers."""
 
@@ -96,8 +96,9 @@ class Identification(Result):
         from pierburg_ros.library.origin import origin
 
         (folder / "identification.json").write_text(self.to_json(), encoding="utf-8")
-        self.model.write(folder / "model.yaml")
-        page = identification_page(self.found, self.recordings, *origin(self.model.actuator, self.recordings))
+        model = folder / "model.yaml"
+        self.model.write(model)
+        page = identification_page(self.found, self.recordings, *origin(self.model.actuator, self.recordings, model))
         (folder / "identification.html").write_text(page, encoding="utf-8")
         self.picture().savefig(folder / "fit.png", dpi=120)
         if self.found.static is not None:

@@ -23,6 +23,15 @@ class Model(plant.Model):
         worn = pr.Model.nominal("pierburg").with_values({"armature_resistance": 4.7})
     """
 
+    def __repr__(self) -> str:
+        content = self.as_mapping()
+        changed = [f"{name} {value:.6g}" for name, value in content["parameters"].items()]
+        shape = ["residual torque"] if self.residual_torque is not None else []
+        return f"Model({', '.join([self.actuator.name, *changed, *self.active_effects, *shape])})"
+
+    def __hash__(self) -> int:
+        return hash((self.actuator.name, tuple(sorted(self.values.items()))))
+
     @staticmethod
     def nominal(actuator: Actuator | str | Path = "pierburg") -> Model:
         """An actuator as described: a shipped name (pierburg, xl330) or the path of a description."""

@@ -6,11 +6,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pierburg_ros.actuators import Actuator
+from pierburg_ros.library.output import published
+from pierburg_ros.pages.page import Sources
 from pierburg_ros.pages.provenance import provenance
 from pierburg_ros.recording import Recording
 
 
-def origin(actuator: Actuator, recordings: Sequence[Recording]) -> tuple[list[tuple[str, str]], list[Path]]:
-    """What a page says of its origin, and the files of the recordings, as far as they were read from files."""
-    paths = {recording.name: recording.path for recording in recordings}
-    return provenance(actuator, paths), [path for path in paths.values() if path is not None]
+def origin(
+    actuator: Actuator, recordings: Sequence[Recording], model: Path = Path("model.yaml")
+) -> tuple[list[tuple[str, str]], Sources]:
+    """What a page says of its origin, and how to name its recordings and its `model` file on a command line."""
+    by_name = {recording.name: recording for recording in recordings}
+    rows = provenance(actuator, {name: recording.path for name, recording in by_name.items()}, published)
+    read = [[str(published(each.path)), *each.read_with] for each in by_name.values() if each.path is not None]
+    return rows, Sources(read, str(published(model)))

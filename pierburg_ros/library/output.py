@@ -60,17 +60,17 @@ def refuse_unusable(output: Path, target: Path) -> None:
     if target.is_symlink() and not target.exists():
         raise InputError(f"{output} is a link that leads nowhere, expected a folder for the results. Remove it.")
     if target.exists() and not target.is_dir():
-        raise InputError(f"{output} is a file, expected a folder for the results. Choose another --output.")
+        raise InputError(f"{output} is a file, expected a folder for the results. Choose another folder.")
     present = next(path for path in (target, *target.parents) if path.exists())
     if not present.is_dir() or not os.access(present, os.W_OK | os.X_OK):
-        raise InputError(f"{output} cannot be written, since {present} cannot. Choose another --output.")
+        raise InputError(f"{output} cannot be written, since {present} cannot. Choose another folder.")
 
 
 def full(output: Path, error: OSError) -> OSError | InputError:
     """What to raise for `error`: one line where the disk is full, else itself."""
     if error.errno not in FULL:
         return error
-    return InputError(f"{output}: {error.strerror}; nothing was written. Free some space, or choose another --output.")
+    return InputError(f"{output}: {error.strerror}; nothing was written. Free some space, or choose another folder.")
 
 
 @contextmanager
@@ -79,7 +79,7 @@ def claimed(target: Path) -> Iterator[Path]:
     hidden = target.parent / f"{HIDDEN}{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:16]}"
     lock = taken(hidden)
     if lock is None:
-        raise InputError(f"Another run writes into {target}. Wait until it has ended, or choose another --output.")
+        raise InputError(f"Another run writes into {target}. Wait until it has ended, or choose another folder.")
     try:
         lock.write(os.fsencode(target.name))
         lock.flush()
@@ -132,6 +132,20 @@ def publish(complete: Path, target: Path) -> None:
         place = target / source.relative_to(complete)
         place.parent.mkdir(parents=True, exist_ok=True)
         os.replace(source, place)
+
+
+def published(path: Path) -> Path:
+    """Where a path will lie when the runs that write it have ended; from the present folder if it lies below that.
+
+    A path that no run writes is given back as it is.
+    """
+    for partial in (path.absolute(), *path.absolute().parents):
+        hidden = partial.parent
+        if partial.name == PARTIAL and hidden.name.startswith(HIDDEN):
+            target = hidden.parent / os.fsdecode((hidden / LOCK).read_bytes())
+            place = published(target / path.absolute().relative_to(partial))
+            return place.relative_to(Path.cwd()) if place.is_relative_to(Path.cwd()) else place
+    return path
 
 
 @contextmanager

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from pierburg_ros.comparison import compare as comparison
-from pierburg_ros.diagnosis.result import Result, View
-from pierburg_ros.diagnosis.schema import Diagnosis
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.file_times import FileTimes, counted
 from pierburg_ros.viewers.overlay import Overlay, Window, remarks_on, window_share
+
+if TYPE_CHECKING:
+    from pierburg_ros.diagnosis.result import Result, View
+    from pierburg_ros.diagnosis.schema import Diagnosis
 
 ACTED = ("supply_voltage", "temperature", "enabled", "setpoints")
 """Channels beside the command that a recording may hold."""
@@ -51,6 +54,8 @@ def of_diagnosis(result: Result, recordings: Sequence[Recording]) -> list[Overla
 
 def _unconcluded(recording: Recording) -> View:
     """A recording as it was read, with no model beside it."""
+    from pierburg_ros.diagnosis.result import View
+
     command, nothing = recording.command.at(recording.time, before=0.0), recording.time[:0]
     return View(recording.name, recording.time, recording.measured, command, nothing, nothing, {})
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError
+from pierburg_ros.library import recording
 from pierburg_ros.recording import Recording, read_recording
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
 from pierburg_ros.recording.signals import SIGNALS
@@ -24,7 +25,7 @@ def read(
     topics: Mapping[str, str] | None = None,
     signals: str | Path | Mapping[str, Any] | SignalMap | None = None,
     actuator: Actuator | None = None,
-) -> Recording:
+) -> recording.Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
     A CSV has a header with `time` [s], an input, `duty` [1, from -1 to 1], `current` [A] or `torque` [N.m], and
@@ -40,7 +41,18 @@ def read(
     preferred = () if actuator is None else (actuator.input, actuator.quantity)
     if actuator is not None:
         check_motion(chosen, actuator)
-    return read_recording(path, time=time, signals=chosen, preferred=preferred)
+    found = read_recording(path, time=time, signals=chosen, preferred=preferred)
+    return recording.Recording(**{**vars(found), "read_with": tuple(options(time, topics or {}, signals))})
+
+
+def options(time: str | None, topics: Mapping[str, str], signals: object) -> Iterator[str]:
+    """The options with which a command reads a recording alike; a signal map that is no file has none."""
+    if isinstance(signals, (str, Path)):
+        yield from ("--signals", str(signals))
+    for signal, name in topics.items():
+        yield from ("--topic", f"{signal}={name}")
+    if time is not None:
+        yield from ("--time", time)
 
 
 def check_motion(chosen: SignalMap, actuator: Actuator) -> None:
@@ -62,7 +74,7 @@ def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> l
     return [each if isinstance(each, Recording) else read(each, actuator=actuator) for each in several]
 
 
-def taken_up(recording: Recording) -> str:
+def taken_up(measured: Recording) -> str:
     """What to add about a recording that begins in motion and is taken up later; nothing for others."""
-    begin = recording.time[0]
+    begin = measured.time[0]
     return f"; begins in motion, simulated from its first standstill at {begin:.2f} s" if begin > 0.0 else ""

@@ -58,6 +58,13 @@ class Result(ABC):
         with output_folder(Path(folder)) as temporary:
             self.write_into(temporary)
 
+    def plot(self) -> go.Figure:
+        """The same as `figure`, as a recording has it."""
+        return self.figure()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.title})"
+
     def _repr_html_(self) -> str:
         """The main numbers and the picture, for a notebook."""
         cells = (

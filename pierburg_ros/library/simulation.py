@@ -20,11 +20,12 @@ from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.intake import check_count
 from pierburg_ros.library.model import Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import read
+from pierburg_ros.library.recording import Recording
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.library.topics import topics_of
 from pierburg_ros.plant import Inputs
-from pierburg_ros.recording import Channel, Recording, write_recording
+from pierburg_ros.recording import Channel, write_recording
 
 if TYPE_CHECKING:
     import pandas
@@ -69,7 +70,7 @@ class Sampling:
         return sampled[sampled <= (self.duration or sampled[-1])]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Simulation(Result):
     """What the sensor of a simulated actuator gave, as a recording, and the model behind it."""
 
@@ -111,13 +112,13 @@ class Simulation(Result):
         """Measured quantity and input over time, as a Plotly figure."""
         from pierburg_ros.library.signal_plot import figure
 
-        return figure(self.recording, self.model.actuator, self.title)
+        return figure(self.recording, self.unit, self.model.actuator.motion, self.title)
 
     def picture(self) -> Figure:
         """The same as a Matplotlib figure."""
         from pierburg_ros.library.signal_plot import picture
 
-        return picture(self.recording, self.model.actuator, self.title)
+        return picture(self.recording, self.unit, self.model.actuator.motion, self.title)
 
     def columns(self) -> dict[str, Signal]:
         """Time [s], the input in force and what is measured, each of shape (samples,)."""

@@ -47,6 +47,29 @@ class Plot:
         return inert({"data": figure["data"], "layout": layout})
 
 
+@dataclass(frozen=True)
+class Sources:
+    """How a command line names the recordings of a page, each with the options it was read with, and its model file."""
+
+    recordings: Sequence[Sequence[str]] = ()
+    model: str = "model.yaml"
+
+    def commands(self, *wanted: tuple[str, str, str]) -> list[dict[str, str]]:
+        """Commands to copy: of each its purpose, name and output folder; none where no recording is a file."""
+        return [
+            {
+                "purpose": purpose,
+                "line": shlex.join(["pierburg", name, *self.recordings[0], "--model", self.model, "--output", output]),
+            }
+            for purpose, name, output in wanted
+            if self.recordings
+        ]
+
+
+NOT_FILES = Sources()
+"""Recordings that were not read from files."""
+
+
 def written(
     package: str, template: str, signals: Mapping[str, Signal], context: Mapping[str, Any], **frame: Any
 ) -> str:
@@ -105,8 +128,3 @@ def _base64(values: np.ndarray) -> str:
 def _source(package: str, name: str) -> str | None:
     file = resources.files(package) / name
     return file.read_text(encoding="utf-8") if file.is_file() else None
-
-
-def command(purpose: str, line: Sequence[str]) -> dict[str, str]:
-    """A command to copy, with what it is for."""
-    return {"purpose": purpose, "line": shlex.join(line)}

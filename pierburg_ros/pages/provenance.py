@@ -6,7 +6,7 @@ import hashlib
 import platform
 import shlex
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -16,11 +16,16 @@ from pierburg_ros.actuators import Actuator
 PACKAGES = ("pierburg_ros", "numpy", "scipy", "numba", "mcap", "plotly")
 
 
-def provenance(actuator: Actuator, recordings: Mapping[str, Path | None]) -> list[tuple[str, str]]:
-    """What a page says of its origin, in rows of two; `recordings` by name, with where each was read from if known."""
+def provenance(
+    actuator: Actuator, recordings: Mapping[str, Path | None], place: Callable[[Path], Path] = Path
+) -> list[tuple[str, str]]:
+    """What a page says of its origin, in rows of two.
+
+    `recordings` by name, with where each was read from if known; `place` says where that lies when the page is read.
+    """
     rows = [("actuator", f"{actuator.name}: {actuator.title}")]
     for name, path in recordings.items():
-        rows.append((f"recording {name}", "not read from a file" if path is None else digest(path)))
+        rows.append((f"recording {name}", "not read from a file" if path is None else f"{place(path)}{digest(path)}"))
     rows.append(("command", command_line()))
     rows.append(("versions", ", ".join([f"Python {platform.python_version()}", *_versions()])))
     rows.append(("written", datetime.now(timezone.utc).isoformat(timespec="seconds")))
@@ -28,7 +33,7 @@ def provenance(actuator: Actuator, recordings: Mapping[str, Path | None]) -> lis
 
 
 def digest(path: Path) -> str:
-    """Size and SHA-256 of a file, or of all files of a folder one after another by name; or that it is gone."""
+    """What to say behind a path: size and SHA-256, of a folder those of its files by name; or that it is gone."""
     found = hashlib.sha256()
     size = 0
     try:
@@ -37,8 +42,8 @@ def digest(path: Path) -> str:
                 found.update(block)
                 size += len(block)
     except OSError as error:
-        return f"{path}: cannot be read again ({error.strerror})"
-    return f"{path}, {size} bytes, SHA-256 {found.hexdigest()}"
+        return f": cannot be read again ({error.strerror})"
+    return f", {size} bytes, SHA-256 {found.hexdigest()}"
 
 
 def command_line() -> str:

@@ -124,6 +124,7 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         losses=losses,
         input=driven,
         path=None,
+        read_with=(),
         file_times=file_times(timed["measured"], first.time),
     )
 

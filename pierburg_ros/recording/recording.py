@@ -31,6 +31,9 @@ class Channel:
         object.__setattr__(self, "values", np.asarray(self.values, dtype=np.float64))
         check_signal("a channel", self.time, self.values)
 
+    def __repr__(self) -> str:
+        return f"Channel({self.time.size} values from {self.time[0]:.4g} to {self.time[-1]:.4g} s)"
+
     def at(self, time: Samples, before: float | None = None) -> Samples:
         """Values in force at `time` [s]; earlier than the first one: `before`, or else the first value."""
         place = np.searchsorted(self.time, time, side="right") - 1
@@ -54,7 +57,8 @@ class Recording:
     setpoints [rad]. What was recorded before the first sample has a negative time. Of a linear actuator all of them
     are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
     time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing,
-    `path` where it was read from, `file_times` when its samples lie there.
+    `path` where it was read from and `read_with` with which options of a command, `file_times` when its samples lie
+    there.
     """
 
     name: str
@@ -71,6 +75,7 @@ class Recording:
     input: str = "duty"
     path: Path | None = None
     file_times: FileTimes | None = None
+    read_with: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
@@ -93,6 +98,12 @@ class Recording:
                 " Divide percentages by 100 (`duty: {unit: percent}` in a signal map) and counts by those of full duty"
                 " (`duty: {scale: ...}`), and record the duty that was applied, no setpoint."
             )
+
+    def __repr__(self) -> str:
+        return (
+            f"Recording({self.name}: {self.quantity} [{self.unit}] under {self.input}, {self.time.size} samples over"
+            f" {self.duration:.4g} s)"
+        )
 
     def _drop_repeats(self) -> None:
         again = np.flatnonzero(np.diff(self.time) == 0.0) + 1

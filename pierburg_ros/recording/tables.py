@@ -98,6 +98,7 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
         losses=tuple(loss for loss in losses if loss.spans),
         input=driven,
         path=None,
+        read_with=(),
         file_times=FileTimes.of_column(measured.time, reader.first + origin),
         **acting,
     )

@@ -23,8 +23,9 @@ def check_rerun() -> None:
     """Refuse where the library that writes the file is not installed."""
     if find_spec("rerun") is None:
         raise InputError(
-            "--rerun needs rerun-sdk, which is not installed. Install it with pip install 'pierburg_ros[rerun]',"
-            " or leave --rerun out."
+            "A file for the Rerun viewer needs rerun-sdk, which is not installed. Install it with"
+            " pip install 'pierburg_ros[rerun]',"
+            " or leave that file out."
         )
 
 

@@ -6,10 +6,15 @@ from types import SimpleNamespace
 
 import pytest
 
+from pierburg_ros.actuators import SHIPPED
 from pierburg_ros.cli import app
+from pierburg_ros.cli.options import models
 from pierburg_ros.cli.options.recordings import topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
+
+LATER = {"experiment", "prove", "tune"}
+"""Commands whose help loads what they work with."""
 
 
 def ending(arguments) -> int:
@@ -35,13 +40,19 @@ def test_help_lists_every_command_of_the_contract(capsys):
         assert f" {name} " in listed
 
 
-def test_help_imports_neither_compiler_nor_libraries():
+@pytest.mark.parametrize("name", ["", *sorted(set(app.COMMANDS) - LATER)])
+def test_help_imports_neither_compiler_nor_libraries(name):
     script = (
-        "import sys\nfrom pierburg_ros.cli.app import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n"
+        f"import sys\nfrom pierburg_ros.cli.app import main\ntry:\n    main({[*name.split(), '--help']})\n"
+        "except SystemExit:\n"
         "    print([name for name in ('numba', 'scipy', 'numpy', 'plotly', 'rclpy') if name in sys.modules])"
     )
     shown = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
     assert shown.splitlines()[-1] == "[]"
+
+
+def test_the_actuators_that_the_options_name_are_those_that_are_shipped():
+    assert models.SHIPPED == SHIPPED
 
 
 def test_an_input_error_is_one_line_and_status_2(command, capsys):

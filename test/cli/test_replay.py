@@ -38,6 +38,7 @@ def test_writes_what_the_contract_names(at_rest, tmp_path, capsys):
         "replay.mcap",
         "replay.html",
         "replay.png",
+        "model.yaml",
     }
     result = json.loads((output / "replay.json").read_text())
     assert result["unit"] == "V" and result["samples"] == 1000

@@ -2,7 +2,6 @@
 
 import pytest
 
-from pierburg_ros.cli import diagnose as command
 from pierburg_ros.cli.app import main, spread
 
 ROWS = "".join(f"{0.01 * sample},{0.2 if sample > 100 else 0.0},{0.42 + 0.001 * sample}\n" for sample in range(300))
@@ -40,7 +39,7 @@ def test_all_up_to_the_next_option_are_recordings_of_the_simulator(files, monkey
     def asked(recordings, simulation, **_):
         raise Asked([each.name for each in recordings], [each.name for each in simulation])
 
-    monkeypatch.setattr(command, "diagnosis_of", asked)
+    monkeypatch.setattr("pierburg_ros.library.diagnosing.diagnose", asked)
     with pytest.raises(Asked) as question:
         main(["diagnose", *arguments])
     assert question.value.args == (["real.csv"], ["one.csv", "two.csv"])

@@ -14,7 +14,7 @@ from pierburg_ros.recording.signals import SIGNALS
 
 LANGUAGES = {"sh", "console", "text", "python", "yaml", "csv", "json", "{eval-rst}"}
 RUN = {
-    "README.md": "test/library/test_documentation.py",
+    "README.md": "test/docs/test_tutorials.py",
     "docs/fleet.md": "test/fleets/test_fleet.py",
     "docs/library.md": "test/library/test_documentation.py",
     "docs/my_bag.md": "test/docs/test_tutorials.py",

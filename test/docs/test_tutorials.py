@@ -1,4 +1,4 @@
-"""The two tutorials and the notebooks: run from top to bottom, and what they quote is what comes out."""
+"""The README and the tutorials, pasted into a shell in a clean clone: they run, and what they quote comes out."""
 
 from __future__ import annotations
 
@@ -10,17 +10,27 @@ import shutil
 import matplotlib.image
 import numpy as np
 import pytest
-from support.browser import CHROMIUM, DRIVER
-from support.documentation import ROOT, blocks, commands, run_shown
+from support.browser import WANTED
+from support.documentation import ROOT, clone, pasted
 from support.snippets import run
 
-pytestmark = pytest.mark.search
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 BOX = re.compile(r"[│┃|\s]+")
 
 
-def test_the_story_runs_and_says_what_comes_out(tmp_path, monkeypatch, capsys):
-    follow("docs/story.md", tmp_path, monkeypatch, capsys)
+@pytest.mark.ros
+def test_the_readme_runs_as_pasted(tmp_path):
+    pytest.importorskip("mujoco", minversion="3.13")
+    pasted("README.md", clone(tmp_path))
+    for result in ("demo/diagnosis", "throttle", "bench"):
+        document = json.loads((tmp_path / "results" / result / "diagnosis.json").read_text())
+        assert document["verdict"] == "missing_physics", result
+    assert (tmp_path / "throttle.xml").exists()
+
+
+@pytest.mark.search
+def test_the_story_runs_and_says_what_comes_out(tmp_path):
+    holds(pasted("docs/story.md", clone(tmp_path)))
     document = json.loads((tmp_path / "results/diagnosis/diagnosis.json").read_text())
     assert [effect["id"] for effect in document["effects"]] == ["static_friction"]
     assert document["parameters"]["armature_resistance"]["value"] == pytest.approx(4.55, rel=0.001)
@@ -28,11 +38,12 @@ def test_the_story_runs_and_says_what_comes_out(tmp_path, monkeypatch, capsys):
     assert breakaway[0] < 0.27 < breakaway[1]
 
 
-def test_my_bag_ends_in_a_model_that_mujoco_runs_to_the_noise(tmp_path, monkeypatch, capsys):
+@pytest.mark.search
+def test_my_bag_ends_in_a_model_that_mujoco_runs_to_the_noise(tmp_path):
     pytest.importorskip("mujoco", minversion="3.13")
-    follow("docs/my_bag.md", tmp_path, monkeypatch, capsys)
+    holds(pasted("docs/my_bag.md", clone(tmp_path)))
     assert (tmp_path / "results/throttle/report.html").exists()
-    if CHROMIUM and DRIVER:
+    if WANTED:
         the_pictures_of_the_readme_can_be_taken(tmp_path / "results/throttle/report.html", tmp_path)
 
 
@@ -48,13 +59,7 @@ def the_pictures_of_the_readme_can_be_taken(report, folder):
         assert (ROOT / "docs" / "images" / name).stat().st_size < 200 * 1024
 
 
-def test_the_readme_goes_the_way_of_my_bag():
-    """Its commands are those of the page, which are run above, but for comments."""
-    page = [words for block in blocks("docs/my_bag.md", "sh") for words in commands(block)]
-    (own,) = [block for block in blocks("README.md", "sh") if "inspect" in block.text]
-    assert [words for words in commands(own) if words not in page] == []
-
-
+@pytest.mark.search
 def test_the_notebook_of_my_bag_names_what_was_concealed(tmp_path, monkeypatch):
     for name in ("throttle_bag.py", "my_actuator.yaml"):
         shutil.copy(ROOT / "examples" / name, tmp_path)
@@ -71,25 +76,12 @@ def test_the_notebook_of_my_bag_names_what_was_concealed(tmp_path, monkeypatch):
     assert (tmp_path / "throttle.xml").exists()
 
 
-def follow(page, folder, monkeypatch, capsys):
-    """Run the blocks of a page from top to bottom; each text is what the blocks since the last one have said."""
-    shutil.copytree(ROOT / "examples", folder / "examples")
-    monkeypatch.chdir(folder)
-    monkeypatch.setenv("COLUMNS", "100")
-    names: dict[str, object] = {}
-    said = ""
-    for block in blocks(page, "sh", "python", "text"):
-        if block.language == "text":
-            for line in block.text.splitlines():
-                assert any(alike(line, each) for each in said.splitlines()), f"{line!r} is not in\n{said}"
-            said = ""
-        elif block.language == "python":
-            exec(block.text, names)
-        else:
-            for words in commands(block):
-                if words[0] != "make":
-                    run_shown(words)
-        said += capsys.readouterr().out
+def holds(quotes):
+    """Each line that a page quotes was printed since the text before."""
+    assert quotes
+    for text, said in quotes:
+        for line in text.splitlines():
+            assert any(alike(line, each) for each in said.splitlines()), f"{line!r} is not in\n{said}"
 
 
 def alike(line: str, other: str) -> bool:

@@ -52,6 +52,35 @@ def test_where_nothing_changes_the_sentence_says_so():
     assert said.startswith("No unit stands out")
 
 
+def test_two_units_with_a_recording_each_are_ranked_by_their_last_verdict():
+    worn = {"verdict": "missing_physics", "findings": [named(0.02)], "nominal_rmse": 0.1}
+    made = [
+        examined("healthy", 0, 4.139, 0.0),
+        examined("worn", 0, 4.139, 0.0, **worn),
+        examined("repaired", 0, 4.139, 0.0, **worn),
+        examined("repaired", 1, 4.139, 30.0),
+    ]
+    of = pr.fleets.fleet.fleet_of
+    pair = of(made[:2], pr.Model.nominal("pierburg"), {})
+    assert pair.sentence == (
+        "Look at worn first: its last diagnosis says missing physics: backlash; as described the error is 50 times the"
+        " noise."
+    )
+    found = of(made, pair.nominal, {}).attention
+    assert [(each.unit, each.kind) for each in found] == [
+        ("worn", "its verdict"),
+        ("healthy", "nothing stands out"),
+        ("repaired", "nothing stands out"),
+    ]
+
+
+def test_a_unit_of_which_nothing_can_be_read_or_trusted_comes_before_a_healthy_one():
+    made = [examined("healthy", 0, 4.139, 0.0), examined("turned", 0, 4.139, 0.0, faults=["duty: turned"])]
+    bad = type(made[0])(made[0].source.__class__("/runs/bad/0.mcap", "bad"), "", {"problem": "none"}, {})
+    found = pr.fleets.fleet.fleet_of([*made, bad], pr.Model.nominal("pierburg"), {}).attention
+    assert {each.unit for each in found[:2]} == {"turned", "bad"}
+
+
 def test_limits_that_are_ruled_out_count_as_the_range_they_leave():
     early = [examined("a", k, 4.1, 30.0 * k, findings=[limited(0.006)]) for k in range(3)]
     gap = {"backlash.gap": {"value": 0.02, "deviation": 0.001, "determined": True}}
@@ -144,9 +173,9 @@ def test_recordings_are_diagnosed_once_and_a_bad_one_is_a_row(tmp_path):
     for number, resistance in enumerate((4.139, 4.6)):
         worn = pr.Model.nominal("pierburg").with_values({"armature_resistance": resistance})
         made = pr.simulate(worn, duty=duty, time=time, noise=0.003, seed=number)
-        made.save(tmp_path / "runs" / "a" / f"2026-0{number + 1}-01")
-    (tmp_path / "runs" / "a" / "2026-03-01").mkdir()
-    (tmp_path / "runs" / "a" / "2026-03-01" / "simulated.mcap").write_bytes(b"nothing")
+        made.save(tmp_path / "runs" / "ab"[number] / f"2026-0{number + 1}-01")
+    (tmp_path / "runs" / "c" / "2026-03-01").mkdir(parents=True)
+    (tmp_path / "runs" / "c" / "2026-03-01" / "simulated.mcap").write_bytes(b"nothing")
     told = []
 
     def run():
@@ -159,6 +188,10 @@ def test_recordings_are_diagnosed_once_and_a_bad_one_is_a_row(tmp_path):
     first = run()
     assert [each.result.get("verdict") for each in first.recordings] == ["consistent", "parameter_drift", None]
     assert "is not an MCAP file" in first.recordings[2].problem
+    assert [each.unit for each in first.attention] == ["c", "b", "a"]
+    assert first.attention[1].why.startswith(
+        "its last diagnosis says parameter drift: armature resistance; as described"
+    )
     assert told.count(("diagnosing", 3, 3)) == 1
     reports = [row["report"] for row in first.rows("recordings")]
     assert reports[2] is None and all((tmp_path / "out" / report).exists() for report in reports[:2])

@@ -1,12 +1,12 @@
 """The page of a fleet in a real browser: sorted, filtered, opened, with a thousand units."""
 
 import pytest
-from support.browser import CHROMIUM, DRIVER, browser
+from support.browser import NEEDS_BROWSER, browser
 from support.fleets import fleet
 
 from pierburg_ros.fleets.page import fleet_page
 
-pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER), reason="needs chromium and chromedriver on the path")
+pytestmark = NEEDS_BROWSER
 UNITS = 1000
 
 

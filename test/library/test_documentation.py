@@ -1,4 +1,4 @@
-"""The page of the interface, the lines of the README and the notebook, run as they stand."""
+"""The page of the interface and the notebook, run as they stand."""
 
 import json
 import re
@@ -41,15 +41,6 @@ def test_the_notebook_leads_from_a_csv_to_a_corrected_model(tmp_path, monkeypatc
     assert names["diagnosis"].model.values["armature_resistance"] == pytest.approx(4.55, rel=0.01)
     assert names["after"].rmse < 1.1 * names["after"].noise < 0.1 * names["before"].rmse
     assert "model.yaml" in shown[-1]
-
-
-def test_the_lines_of_the_readme_run(tmp_path, monkeypatch):
-    """In a second: with no time for a search, whose result another test has."""
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    monkeypatch.chdir(tmp_path)
-    (code,) = snippets("README.md")
-    run(code.replace('"pierburg")', '"pierburg", budget=1.0)'), {})
-    assert (tmp_path / "results" / "bench" / "report.html").exists()
 
 
 def test_the_notebook_is_kept_without_outputs():

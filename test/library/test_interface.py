@@ -56,6 +56,10 @@ def test_everything_it_names_is_there_and_listed():
         assert getattr(pr, name).__doc__
 
 
+def test_it_lists_what_it_offers_and_nothing_of_its_own_making():
+    assert [name for name in dir(pr) if not name.startswith("__")] == pr.__all__
+
+
 def test_what_it_names_and_what_type_checkers_see_are_the_same():
     block = next(node for node in ast.parse(SOURCE.read_text()).body if isinstance(node, ast.If))
     seen = {alias.name: node.module for node in block.body for alias in node.names}
@@ -66,6 +70,23 @@ def test_what_it_names_and_what_type_checkers_see_are_the_same():
 def test_a_name_that_does_not_exist_is_an_ordinary_attribute_error():
     with pytest.raises(AttributeError, match=r"module 'pierburg_ros' has no attribute 'analyse'"):
         _ = pr.analyse
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda path: pr.read(path, time="wall"), "`time` found 'wall', expected one of stamp, clock, publish, log"),
+        (lambda path: pr.read(path, topics={"volume": "v"}), "`topics` found the unknown signal volume"),
+        (lambda path: pr.read(path, topics={"duty": "pwm"}), "has no column pwm"),
+        (lambda path: pr.compare(path, pr.Model.nominal("xl330")), "Choose another `actuator`."),
+    ],
+)
+def test_what_cannot_be_used_is_told_by_argument(tmp_path, call, said):
+    path = tmp_path / "run.csv"
+    path.write_text("time,duty,hall_voltage\n0,0,1\n1,0,1\n2,0,1\n")
+    with pytest.raises(pr.InputError) as refused:
+        call(path)
+    assert said in str(refused.value) and "--" not in str(refused.value)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

@@ -2,6 +2,8 @@
 
 import json
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from html.parser import HTMLParser
 
 import matplotlib.figure
@@ -11,6 +13,7 @@ import pytest
 
 import pierburg_ros as pr
 from pierburg_ros.cli.app import main
+from pierburg_ros.library.diagnosing import one_at_a_time
 from pierburg_ros.library.result import Result
 
 RESULTS = ("simulation", "comparison", "identification")
@@ -28,6 +31,36 @@ def test_json_has_no_number_that_json_does_not_know(result):
 def test_figures_are_objects_of_both_libraries(result):
     assert isinstance(result.figure(), go.Figure) and result.figure().data
     assert isinstance(result.picture(), matplotlib.figure.Figure) and result.picture().axes
+
+
+def test_results_recordings_and_models_print_as_one_line(result):
+    for shown in (result, pr.Model.nominal(), pr.Model.nominal().actuator, *getattr(result, "recordings", ())):
+        assert repr(shown).startswith(type(shown).__name__) and "\n" not in repr(shown) and len(repr(shown)) < 200
+
+
+def test_a_recording_and_a_result_are_drawn_alike(simulation, comparison):
+    for each in (simulation, comparison, comparison.recording, simulation.recording):
+        assert isinstance(each.plot(), go.Figure)
+
+
+def test_equal_models_are_one_key():
+    worn = {"armature_resistance": 4.7}
+    assert len({pr.Model.nominal(), pr.Model.nominal().with_values(worn), pr.Model.nominal().with_values(worn)}) == 2
+
+
+def test_progress_is_told_by_one_thread_at_a_time():
+    inside, most = [], []
+
+    def tell(what):
+        inside.append(what)
+        most.append(len(inside))
+        time.sleep(0.001)
+        inside.remove(what)
+
+    alone = one_at_a_time(tell)
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(alone, map(str, range(40))))
+    assert most == [1] * 40
 
 
 def test_a_notebook_shows_the_numbers_and_the_picture(result):

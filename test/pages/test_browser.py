@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import matplotlib.image
 import numpy as np
 import pytest
-from support.browser import CHROMIUM, DRIVER, Page, browser
+from support.browser import NEEDS_BROWSER, Page, browser
 from support.reports import LEFT, result
 
 from pierburg_ros.actuators import read_actuator
@@ -16,10 +16,11 @@ from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.page import replay_page
 from pierburg_ros.diagnosis.report.page import write_page
 from pierburg_ros.identification.page import identification_page
+from pierburg_ros.pages.page import Sources
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
-pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER), reason="needs chromium and chromedriver on the path")
+pytestmark = NEEDS_BROWSER
 
 TIME = 0.002 * np.arange(5000)
 DRAWN = 0.002
@@ -32,7 +33,10 @@ def pages(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("pages")
     several = {"recordings": ["first.mcap", "second <b>.mcap"]}
     write_page(
-        folder / "report.html", result(verdict="unexplained", residual_torque=LEFT, **several), [("a", "b")], [folder]
+        folder / "report.html",
+        result(verdict="unexplained", residual_torque=LEFT, **several),
+        [("a", "b")],
+        Sources([[str(folder)]]),
     )
     noise = 0.003 * np.random.default_rng(1).standard_normal(TIME.size)
     recording = Recording(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import shutil
 import subprocess
 import time
@@ -13,7 +14,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 CHROMIUM, DRIVER = shutil.which("chromium") or shutil.which("google-chrome"), shutil.which("chromedriver")
+WANTED = bool(CHROMIUM and (DRIVER or os.environ.get("CI") == "true"))
+"""Whether to test in a browser: where there is one with its driver. Where all checks run, a missing driver fails."""
+NEEDS_BROWSER = pytest.mark.skipif(not WANTED, reason="needs chromium and chromedriver on the path")
 FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -81,7 +87,7 @@ class Page:
 @contextmanager
 def browser(folder: Path, width: int) -> Iterator[Page]:
     """A browser with a window of a `width` [px], as narrow as a phone's if asked; its profile is in `folder`."""
-    assert CHROMIUM and DRIVER
+    assert CHROMIUM and DRIVER, "found chromium and no chromedriver, expected both: install chromium-driver"
     log = (folder / "driver.log").open("w+")
     driver = subprocess.Popen([DRIVER, "--port=0"], stdout=log, stderr=log)
     page = None

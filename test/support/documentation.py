@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -61,3 +63,43 @@ def run_shown(words: list[str]) -> None:
         subprocess.run([sys.executable, *words[1:]], check=True)
     else:
         subprocess.run(words, check=True)
+
+
+SAID = "=== a text of the page stands here ==="
+"""A line between what the blocks before a quoted text have said and what comes after it."""
+
+
+def clone(folder: Path) -> Path:
+    """What git tracks of the project, copied to `folder`, set up as `make` does it: with this environment as .venv."""
+    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    for name in tracked.strip("\0").split("\0"):
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+    (folder / ".venv").mkdir()
+    (folder / ".venv" / "bin").symlink_to(Path(sys.prefix) / "bin")
+    for stamp in (".ready", ".installed"):
+        (folder / ".venv" / stamp).touch()
+    return folder
+
+
+def pasted(page: str, folder: Path) -> list[tuple[str, str]]:
+    """Paste every block of a page into one shell in `folder`, from top to bottom; the first command that fails ends it.
+
+    Python is pasted into `python`. Gives each text that the page quotes, with what was printed since the one before.
+    """
+    shown = {"sh": "{}", "python": "python <<'PYTHON'\n{}PYTHON\n", "text": f"echo '{SAID}'\n"}
+    found = blocks(page, *shown)
+    script = "".join(shown[block.language].replace("{}", block.text) for block in found)
+    kept = {name: value for name, value in os.environ.items() if name not in ("VIRTUAL_ENV", "PYTHONPATH")}
+    path = os.pathsep.join(each for each in kept["PATH"].split(os.pathsep) if not each.startswith(sys.prefix))
+    done = subprocess.run(
+        ["bash", "-ec", script],
+        cwd=folder,
+        env={**kept, "PATH": path, "COLUMNS": "100"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, f"{page}:\n{done.stdout}\n{done.stderr}"
+    quoted = [block.text for block in found if block.language == "text"]
+    return list(zip(quoted, done.stdout.split(SAID), strict=False))

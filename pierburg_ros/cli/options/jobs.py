@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.library.diagnosing import USUAL_BUDGET
+from pierburg_ros.deadline import USUAL_BUDGET
 
 JobsOption = Annotated[
     int | None, typer.Option(min=1, show_default=False, help="Pieces of work at a time; default: one for each core.")

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
-from pierburg_ros.audit import audit
 from pierburg_ros.errors import InputError
-from pierburg_ros.plant import Model
-from pierburg_ros.recording import Recording
+
+if TYPE_CHECKING:
+    from pierburg_ros.plant import Model
+    from pierburg_ros.recording import Recording
 
 TopicOption = Annotated[
     list[str] | None,
@@ -39,6 +40,16 @@ TimeOption = Annotated[
     ),
 ]
 
+ResultsOption = Annotated[
+    Path | None,
+    typer.Option(show_default="results/COMMAND/RECORDING", help="Folder for the results."),
+]
+
+
+def results_folder(output: Path | None, command: str, recording: Path) -> Path:
+    """The folder that was named, else that of the `command` and its first recording."""
+    return output or Path("results") / command / recording.absolute().stem
+
 
 def topics_of(options: Sequence[str] | None) -> dict[str, str]:
     """{"duty": "/bench/pwm"} from ["duty=/bench/pwm"]."""
@@ -60,5 +71,7 @@ def losses_first(console: Console, recordings: Sequence[Recording]) -> None:
 
 def faults_first(console: Console, recordings: Sequence[Recording], nominal: Model) -> None:
     """Print which signals of the recordings are not what they are read as, and what mends them; nothing of others."""
+    from pierburg_ros.audit import audit
+
     for fault in audit(recordings, nominal):
         console.print(f"Warning: {fault}", soft_wrap=True, markup=False)

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.viewers.rerun_overlay import check_rerun
-
 
 def _writable(path: Path | None) -> Path | None:
     """The file of `--rerun`, refused before any work is done where it cannot be written."""
     if path is not None:
+        from pierburg_ros.viewers.rerun_overlay import check_rerun
+
         check_rerun()
     return path
 

@@ -13,6 +13,7 @@ from pierburg_ros.actuators.units import Motion
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.report import figures
 from pierburg_ros.diagnosis.report.allowed import bars
+from pierburg_ros.diagnosis.report.model_file import model_text
 from pierburg_ros.diagnosis.report.places import places
 from pierburg_ros.diagnosis.report.tried import OFF, title
 from pierburg_ros.diagnosis.result import Result, Tried, View
@@ -20,7 +21,7 @@ from pierburg_ros.diagnosis.schema import Diagnosis
 from pierburg_ros.estimation.likelihood import SIGNIFICANT, TIED
 from pierburg_ros.pages.numbers import words
 from pierburg_ros.pages.over_time import OTHERS
-from pierburg_ros.pages.page import Plot, command, written
+from pierburg_ros.pages.page import NOT_FILES, Plot, Sources, written
 from pierburg_ros.pages.room import page_signals
 
 VERDICTS = {
@@ -37,11 +38,11 @@ ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 
 
 def write_page(
-    path: Path, result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sequence[Path] = ()
+    path: Path, result: Result, provenance: Sequence[tuple[str, str]] = (), sources: Sources = NOT_FILES
 ) -> None:
     """Write the report as one page that needs no network.
 
-    `provenance` is the text on its origin; `sources` are the recordings' files, for commands to copy.
+    `provenance` is the text on its origin; `sources` are for commands to copy.
     """
     path.write_text(page(result, provenance, sources), encoding="utf-8")
 
@@ -49,7 +50,7 @@ def write_page(
 def page(
     result: Result,
     provenance: Sequence[tuple[str, str]] = (),
-    sources: Sequence[Path] = (),
+    sources: Sources = NOT_FILES,
     library_at: str = "",
 ) -> str:
     """The report as HTML; `library_at` is the address of the plotting library, if that is not part of the page."""
@@ -58,6 +59,8 @@ def page(
     found = places(diagnosis.locations)
     context = {
         "d": diagnosis,
+        "concluded": not diagnosis.input_faults,
+        "where": "As read" if diagnosis.input_faults else "Before and after",
         "meaning": NOTHING if diagnosis.input_faults else VERDICTS[diagnosis.verdict],
         "regimes": [regime_row(diagnosis, index) for index in range(len(diagnosis.regimes))],
         "places": found,
@@ -79,8 +82,11 @@ def page(
         "report.html",
         page_signals([signals_of(view) for view in views], ("measured", "recalibrated", "final")),
         context,
-        model_file=result.model.text(),
-        commands=commands(diagnosis, sources),
+        model_file=model_text(result),
+        commands=sources.commands(
+            ("See the diagnosed model beside a recording", "replay", "replayed"),
+            ("Ask what it still lacks, best of a new recording", "diagnose", "again"),
+        ),
         provenance=provenance,
         library_at=library_at,
     )
@@ -156,18 +162,6 @@ def horizon_plots(diagnosis: Diagnosis) -> list[Plot]:
         "; heat is not measured, so the diagnosed model has one over the whole alone" if long else ""
     )
     return [Plot("horizons", figures.horizons_figure(errors, names, diagnosis.unit), caption, 320)]
-
-
-def commands(diagnosis: Diagnosis, sources: Sequence[Path]) -> list[dict[str, str]]:
-    """Commands to run next with the corrected model."""
-    if not sources:
-        return []
-    replay = ["pierburg", "replay", str(sources[0]), "--model", "model.yaml", "--output", "replayed"]
-    again = ["pierburg", "diagnose", "new.mcap", "--model", "model.yaml", "--output", "again"]
-    return [
-        command("See the corrected model beside a recording", replay),
-        command("Look whether a new recording fits the corrected model", again),
-    ]
 
 
 def in_colours(tried: Sequence[Tried]) -> list[Tried]:

@@ -24,7 +24,8 @@ def shown(diagnosis: Diagnosis) -> Group:
     if diagnosis.effects:
         sure = (f"{words(effect.id)} {confidence(effect.confidence)}" for effect in diagnosis.effects)
         parts.append(Text(f"Confidence: {', '.join(sure)}"))
-    parts.append(_errors(diagnosis))
+    if not diagnosis.input_faults:  # then no model was simulated
+        parts.append(_errors(diagnosis))
     if diagnosis.locations:
         places = "; ".join(f"{p.start:.1f} to {p.end:.1f} s ({p.regime})" for p in diagnosis.locations[:3])
         parts.append(Text(f"Where: {places}"))

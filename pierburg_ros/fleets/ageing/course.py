@@ -54,6 +54,16 @@ def moment(each: Examined) -> datetime | None:
     return datetime.fromtimestamp(begun, timezone.utc) if begun is not None and begun > EARLIEST else None
 
 
+def in_time(recordings: Sequence[Examined]) -> list[Examined]:
+    """The recordings by time, those without one first, in the order given."""
+    return sorted(recordings, key=lambda each: 0.0 if (when := moment(each)) is None else when.timestamp())
+
+
+def latest(own: Sequence[Examined]) -> Examined | None:
+    """The last of a unit's recordings that could be used; None where none could."""
+    return next((each for each in reversed(in_time(own)) if not each.problem), None)
+
+
 def courses(recordings: Sequence[Examined], nominal: Mapping[str, float], units: Mapping[str, str]) -> list[Course]:
     """The courses of all units; `nominal` values and `units` by dotted name."""
     points: dict[tuple[str, str], list[tuple[float, ...]]] = defaultdict(list)
