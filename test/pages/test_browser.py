@@ -44,7 +44,9 @@ def pages(tmp_path_factory) -> Path:
     )
     model = Model.nominal(read_actuator("pierburg"))
     comparison = Comparison(recording, model, 2.0 + np.sin(TIME))
-    (folder / "replay.html").write_text(replay_page(comparison, {"RMSE": "0.003 V"}, [("a", "b")], [folder]))
+    (folder / "replay.html").write_text(
+        replay_page(comparison, {"RMSE": "0.003 V"}, [("a", "b")], Sources([[str(folder)]]))
+    )
     names = ("armature_resistance", "torque_constant")
     content = {
         "parameters": {
