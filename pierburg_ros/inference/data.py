@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
+from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.inference.evidence import coarse_step, lasting_rounding
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import angle_per_unit, encoded
@@ -177,22 +178,6 @@ def start_of(time: Signal, measured: Signal) -> Signal:
     return np.array([level, rate, 0.0, STOP * noise, 0.0])
 
 
-def inputs_of(recording: Recording) -> Inputs:
-    """The inputs of the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
-
-    Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
-    supply voltage the first one recorded.
-    """
-    channels = [recording.command, recording.supply_voltage, recording.enabled]
-    times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
-    command = recording.command.at(times, before=0.0)
-    if recording.input == "duty":
-        command = np.clip(command, -1.0, 1.0)
-    supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
-    enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
-    return Inputs(times, command, supply, enabled)
-
-
 def refuse_others(recording: Recording, actuator: Actuator) -> None:
     """InputError where a recording holds another input or quantity than the actuator has."""
     if recording.input != actuator.input:
@@ -225,8 +210,3 @@ def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None
             f"{names} is too short ({samples} samples over {duration:#.3g} s); expected at least {FEWEST} samples over"
             f" {shortest:.2g} s. Record longer: a minute with movements in both directions tells most."
         )
-
-
-def without(data: Data, number: int) -> Data:
-    """All recordings except `number`."""
-    return replace(data, runs=tuple(run for run in data.runs if run.number != number))

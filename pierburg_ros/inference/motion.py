@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -245,8 +245,3 @@ def moving(whole: Filtered, noise: float) -> Flags:
         spread = noise * math.sqrt(12.0 / window**3) / whole.step
     sure = np.abs(whole.velocity) > SURE * spread
     return np.asarray(np.convolve(sure, np.ones(window), "same") > window - 0.5)
-
-
-def joined(motions: list[Motion], every: int) -> list[Motion]:
-    """The same motions with each `every`-th of their samples."""
-    return [replace(motion, samples=motion.samples[::every]) for motion in motions]
