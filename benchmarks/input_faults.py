@@ -19,8 +19,8 @@ from pierburg_ros.audit import audit
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.effects.put_in import CannotPutIn
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import in_order
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.excitation import duty_sequence
 from pierburg_ros.proof.real.channels import with_effect

@@ -23,10 +23,10 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.diagnose import evidence
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.linear import promised
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import FULL, jacobian, minimise
+from pierburg_ros.inference.coordinates import Coordinates
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import FULL, jacobian, minimise
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.bench import record
 from pierburg_ros.proof.concealment import draw

@@ -160,7 +160,7 @@ def drawn(seed: int) -> tuple[Any, dict[str, float]]:
 
     from pierburg_ros.effects import EFFECTS
     from pierburg_ros.errors import InputError
-    from pierburg_ros.estimation.coordinates import in_order
+    from pierburg_ros.inference.coordinates import in_order
 
     random = np.random.default_rng(seed)
     nominal = described(("pierburg", "xl330")[seed % 2])

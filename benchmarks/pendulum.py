@@ -25,7 +25,7 @@ from pierburg_ros.diagnosis.report.horizons import horizons
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.estimation.data import Data, all_training, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
 

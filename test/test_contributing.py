@@ -47,7 +47,7 @@ from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording.recording import Channel, Recording
 random = np.random.default_rng(1)

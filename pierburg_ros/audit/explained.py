@@ -12,9 +12,9 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.coordinates import in_order
-from pierburg_ros.estimation.least_squares import minimise
 from pierburg_ros.estimation.shooting import stretch_length
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.least_squares import minimise
 from pierburg_ros.plant import Model, simulate
 from pierburg_ros.plant.decode import decoded
 

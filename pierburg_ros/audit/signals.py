@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Inputs
 from pierburg_ros.recording import Channel, Recording
 

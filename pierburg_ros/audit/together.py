@@ -13,7 +13,7 @@ from pierburg_ros.audit.explained import FARTHEST, FULL, RELUCTANCE, STEP, Expla
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.estimation.balanced import Motion, balanced
-from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.inference.least_squares import minimise
 from pierburg_ros.plant import Model
 
 ALONE = 0.8

@@ -37,9 +37,9 @@ from pierburg_ros.diagnosis.verdict.shares import Shares, shares
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import pace, workers

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.coordinates import in_order
-from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.least_squares import minimise
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import decoded, turned
 from pierburg_ros.plant.simulate import motor_torque

@@ -9,11 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.coordinates import Coordinates, in_order
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
-from pierburg_ros.estimation.least_squares import FULL, TOLERANCE, Map, Solution, jacobian, minimise
 from pierburg_ros.estimation.likelihood import (
     EXPLAINED,
     FORMULATION,
@@ -26,6 +23,9 @@ from pierburg_ros.estimation.likelihood import (
 from pierburg_ros.estimation.prior import improbability
 from pierburg_ros.estimation.rests import cut_at_rests
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.coordinates import Coordinates, in_order
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
+from pierburg_ros.inference.least_squares import FULL, TOLERANCE, Map, Solution, jacobian, minimise
 from pierburg_ros.plant import Model
 
 FORGIVEN = 3.0

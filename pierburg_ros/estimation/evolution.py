@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.least_squares import Map
+from pierburg_ros.inference.least_squares import Map
 
 HISTORY = (10.0, 30.0)
 """Number of last generations whose lowest costs must agree at the end: the first value, plus the second times the

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Variant
 from pierburg_ros.estimation.likelihood import counted
+from pierburg_ros.inference.explanation import Variant
 
 LATE = 0.5
 """Squared error beyond the noise in the first part, as a share of that in the whole, below which a first fit uses whole

@@ -8,8 +8,8 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.likelihood import SURE
+from pierburg_ros.inference.coordinates import Coordinates
 
 KNOWN = 0.2
 """Standard deviation of the logarithm of a base parameter around its nominal value. Measured: n = 4 splits of eight

@@ -14,9 +14,9 @@ from pierburg_ros.estimation.data import BLOCK, CYCLE
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
 from pierburg_ros.estimation.evolution import evolved
 from pierburg_ros.estimation.first_part import takes_time
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.prior import KNOWN
+from pierburg_ros.inference.least_squares import BRIEF
 
 REACHES = (1.0, 4.0, 12.0, 32.0)
 """Distances of the search along each axis of the cost, in standard deviations of the fit. Measured: together with

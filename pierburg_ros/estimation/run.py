@@ -13,6 +13,7 @@ from pierburg_ros.estimation.initial_state import EVEN, InitialState, first_rest
 from pierburg_ros.estimation.pieces import Pieces, pieces
 from pierburg_ros.estimation.shooting import Shooting, forgets, stretch_length
 from pierburg_ros.estimation.torque_balance import ahead, goes_round, recorded_lag
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Inputs, Model, lasting_state, simulate, simulate_switched
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.simulate import refuse_unsimulated
@@ -189,22 +190,6 @@ def run_of(recording: Recording, model: Model, number: int = 0, whole: Recording
         lag,
         since,
     )
-
-
-def inputs_of(recording: Recording) -> Inputs:
-    """The inputs of the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
-
-    Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
-    supply voltage the first one recorded.
-    """
-    channels = [recording.command, recording.supply_voltage, recording.enabled]
-    times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
-    command = recording.command.at(times, before=0.0)
-    if recording.input == "duty":
-        command = np.clip(command, -1.0, 1.0)
-    supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
-    enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
-    return Inputs(times, command, supply, enabled)
 
 
 def inputs_in_force(recording: Recording, start: InitialState, model: Model) -> Inputs:

@@ -10,14 +10,14 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.covariance import RANK, Covariance
 from pierburg_ros.estimation.data import data_of, rms
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import covariance
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.refinement import COARSEST, refined
 from pierburg_ros.estimation.slopes import FINE
+from pierburg_ros.inference.covariance import RANK, Covariance
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 from pierburg_ros.workers import workers

@@ -12,10 +12,10 @@ from pierburg_ros.actuators.gauge import scaling
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import SURE
 from pierburg_ros.estimation.slopes import sharp
 from pierburg_ros.identification.fit import Identified
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 

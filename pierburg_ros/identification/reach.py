@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pierburg_ros.estimation.balanced import Motion, balanced
-from pierburg_ros.estimation.coordinates import in_order
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.likelihood import EXPLAINED
-from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.estimation.turn import with_turn
 from pierburg_ros.identification.fit import Identified, fit
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 

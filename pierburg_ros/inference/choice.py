@@ -18,8 +18,8 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.explanation import Explanation, Quantity, id_of, without
 from pierburg_ros.inference.evidence import SIGNIFICANT, TIED, certainty, probability
+from pierburg_ros.inference.explanation import Explanation, Quantity, id_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, ladder, rms_of
 from pierburg_ros.inference.search import DEEPEST, adequate
 from pierburg_ros.inference.shortlist import DEPENDENT

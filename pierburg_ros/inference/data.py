@@ -13,7 +13,6 @@ from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import DECLARED, STEP
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.run import inputs_of
 from pierburg_ros.inference.evidence import coarse_step, lasting_rounding
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import angle_per_unit, encoded
@@ -167,6 +166,22 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     for start, end in recording.unknown_input:
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
     return Run(recording.name, number, inputs, recording.time, measured, shown, block, counts, actuator.quantity)
+
+
+def inputs_of(recording: Recording) -> Inputs:
+    """The inputs of the actuator in `recording`: the command, and supply voltage and bridge state where recorded.
+
+    Each channel holds its value until its next one. Before its first value the command is 0, the bridge enabled, the
+    supply voltage the first one recorded.
+    """
+    channels = [recording.command, recording.supply_voltage, recording.enabled]
+    times = np.unique(np.concatenate([channel.time for channel in channels if channel is not None]))
+    command = recording.command.at(times, before=0.0)
+    if recording.input == "duty":
+        command = np.clip(command, -1.0, 1.0)
+    supply = recording.supply_voltage.at(times) if recording.supply_voltage is not None else None
+    enabled = recording.enabled.at(times, before=1.0) > 0.5 if recording.enabled is not None else None
+    return Inputs(times, command, supply, enabled)
 
 
 def start_of(time: Signal, measured: Signal) -> Signal:

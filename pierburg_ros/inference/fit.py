@@ -18,11 +18,11 @@ import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import Coordinates, in_order
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation
-from pierburg_ros.estimation.least_squares import FULL, Solution, jacobian, minimise
+from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data, Run
 from pierburg_ros.inference.evidence import beyond, repetition, structure
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
+from pierburg_ros.inference.least_squares import FULL, Solution, jacobian, minimise
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 from pierburg_ros.plant.decode import begun, decoded_value

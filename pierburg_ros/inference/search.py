@@ -7,9 +7,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from pierburg_ros.effects import DECLARED, EFFECT
-from pierburg_ros.estimation.explanation import Explanation, Variant, without
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, gain
+from pierburg_ros.inference.explanation import Explanation, Variant, without
 from pierburg_ros.inference.fit import Fit, Fitter, ladder
 from pierburg_ros.inference.shortlist import Promise, Span, balanced, forms, promises
 from pierburg_ros.plant import Model

@@ -19,12 +19,12 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import Coordinates, in_order
-from pierburg_ros.estimation.explanation import Variant
-from pierburg_ros.estimation.least_squares import jacobian, minimise
 from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data
+from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.least_squares import jacobian, minimise
 from pierburg_ros.plant import Model
 
 SCREENED = 4

@@ -16,7 +16,7 @@ from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Schedule, Settings, read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.control.schedule import read_schedule
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.intake import check_count
 from pierburg_ros.library.model import Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import read

@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.diagnose import explains_all
 from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found, settled_on
 from pierburg_ros.diagnosis.verdict.conclusion import conclude, verdict_on
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 RUBS = Explanation(variants=(Variant("load_dependent_friction", ("coefficient",)),))
 CUBIC = Variant("nonlinear_spring", ("cubic_stiffness",))

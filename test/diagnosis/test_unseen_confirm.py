@@ -10,7 +10,7 @@ from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.diagnose import effects_stand, unseen_confirm
 from pierburg_ros.estimation.data import in_parts
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 STICKY = {"load_dependent_friction.coefficient": 0.05}
 EFFECT = Explanation(variants=(Variant("load_dependent_friction", ("coefficient",)),))

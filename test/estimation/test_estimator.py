@@ -8,8 +8,8 @@ from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
 
 DRIFTS = Explanation(("armature_resistance", "spring_preload"))
 TRUE = {"armature_resistance": 4.6, "spring_preload": 0.31}

@@ -8,8 +8,8 @@ from pierburg_ros.diagnosis.search.scored import estimator_beside
 from pierburg_ros.estimation.data import FIRST_PART
 from pierburg_ros.estimation.discrepancy import SPAN, Discrepancy
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.first_part import takes_time, where_shown
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 CHANGED = {"spring_preload": 0.3}
 

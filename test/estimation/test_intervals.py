@@ -13,10 +13,10 @@ from support.recordings import NOMINAL
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.likelihood import SURE
 from pierburg_ros.estimation.slopes import FINE
+from pierburg_ros.inference.explanation import Explanation
 
 X, Y = "spring_preload", "coulomb_friction"
 WIDE = 1e4

@@ -8,7 +8,6 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, adequate
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import (
     CLOSE,
     EXPLAINED,
@@ -18,6 +17,7 @@ from pierburg_ros.estimation.likelihood import (
     repetition,
     structure,
 )
+from pierburg_ros.inference.explanation import Explanation
 
 
 def stepped(step: float, noise: float) -> Data:

@@ -9,11 +9,11 @@ from support.recordings import NOISE, NOMINAL, recording
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import all_training, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.initial_state import first_rest
 from pierburg_ros.estimation.intervals import covariance
 from pierburg_ros.estimation.pieces import pieces
 from pierburg_ros.estimation.run import parts_of
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.recording import Channel, Recording
 from pierburg_ros.recording.loss import Loss, numbered_loss
 

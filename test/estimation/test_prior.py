@@ -8,10 +8,10 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.effects import DECLARED
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.prior import KNOWN, implausible, improbability
+from pierburg_ros.inference.coordinates import Coordinates
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 
 HEAT = "thermal_resistance.heat_capacity"

@@ -6,8 +6,8 @@ import pytest
 from support.recordings import NOMINAL, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.refinement import FINEST, SHORTEST, _evolved, _landings, refined
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.recording import Recording
 
 STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))

@@ -7,9 +7,9 @@ import pytest
 from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.initial_state import EVEN, rests_of
 from pierburg_ros.estimation.rests import cut_at_rests
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 STICTION = Explanation((), (Variant("static_friction", ("breakaway_torque", "stribeck_velocity")),))
 TRUTH = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}

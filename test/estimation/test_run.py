@@ -6,8 +6,9 @@ from support.recordings import NOMINAL, PIERBURG
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.run import Switch, inputs_of, resimulated, run_of
+from pierburg_ros.estimation.run import Switch, resimulated, run_of
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 

@@ -7,7 +7,7 @@ from support.other_simulators import mujoco_angle, steps
 from support.recordings import NOMINAL, recording_in_closed_loop
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.decode import decoded
 

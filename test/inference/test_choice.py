@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, recording
 
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.inference.choice import Parabola, Score, predictor, ties
 from pierburg_ros.inference.data import data_of
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fitter, ladder
 
 PARAMETERS = ("armature_resistance", "torque_constant", "spring_preload")

@@ -6,8 +6,8 @@ from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import Solution
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import Solution
 from pierburg_ros.plant import Model
 
 SAMPLES = 2000

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))
 VISCOUS = Variant("viscous_friction", ("coefficient",))

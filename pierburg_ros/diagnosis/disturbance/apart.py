@@ -20,9 +20,9 @@ from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate, forgiven
-from pierburg_ros.estimation.explanation import Explanation, Variant, moments, without
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.inference.explanation import Explanation, Variant, moments, without
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span

@@ -12,9 +12,9 @@ from pierburg_ros.diagnosis.disturbance.window import LONGEST
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.estimation.data import Data, Omission, data_of, in_parts, rms
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.torque_balance import OUTLYING
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span, merged, spans_of

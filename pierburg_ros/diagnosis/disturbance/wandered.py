@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.disturbance.course import Course
 from pierburg_ros.diagnosis.disturbance.slow import Slow
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit, forgiven
-from pierburg_ros.estimation.least_squares import BRIEF, FULL, minimise
+from pierburg_ros.inference.least_squares import BRIEF, FULL, minimise
 
 BEGUN = 12
 """Iterations after which the search gives up a fit with too large a residual. Work: half of a whole fit. With six

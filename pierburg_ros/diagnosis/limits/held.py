@@ -12,9 +12,9 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Variant
+from pierburg_ros.inference.coordinates import Coordinates
+from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.plant import Model
 
 TRUSTED = 1.0

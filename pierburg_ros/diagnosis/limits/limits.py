@@ -21,9 +21,9 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import with_validation
 from pierburg_ros.estimation.discrepancy import Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import BRIEF, FULL
 from pierburg_ros.estimation.likelihood import TIED
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import BRIEF, FULL
 from pierburg_ros.workers import workers
 
 ONE_SIDED = 2.71

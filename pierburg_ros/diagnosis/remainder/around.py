@@ -14,10 +14,10 @@ from pierburg_ros.diagnosis.search.weighing import Supported, Weight
 from pierburg_ros.effects import Effect
 from pierburg_ros.estimation.data import Data, all_training
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.torque_balance import Balance
 from pierburg_ros.estimation.turn import left_of_torque, repeated, with_lesser_orders
+from pierburg_ros.inference.explanation import Explanation, Variant
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 

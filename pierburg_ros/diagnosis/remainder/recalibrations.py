@@ -7,7 +7,7 @@ from pierburg_ros.diagnosis.evidence.stretches import in_stretches
 from pierburg_ros.diagnosis.remainder.shape import STRETCH, Way
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 
 

@@ -17,8 +17,8 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate, estimates
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.workers import workers
 
 

@@ -15,10 +15,10 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.evidence.missing_torque import MOVING, missing_torque
 from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.evidence.stretches import forgotten, in_stretches
-from pierburg_ros.estimation.coordinates import WIDTH
 from pierburg_ros.estimation.data import Data, held_back, rms
-from pierburg_ros.estimation.least_squares import BRIEF, Map, minimise
 from pierburg_ros.estimation.turn import described_turn, with_turn
+from pierburg_ros.inference.coordinates import WIDTH
+from pierburg_ros.inference.least_squares import BRIEF, Map, minimise
 from pierburg_ros.plant import Model
 
 ANGLES = 7

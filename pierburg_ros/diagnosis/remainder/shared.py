@@ -37,8 +37,8 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data, all_training
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, canonical, without
 from pierburg_ros.estimation.refinement import lowered
+from pierburg_ros.inference.explanation import Explanation, canonical, without
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 

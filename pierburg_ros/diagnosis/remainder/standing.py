@@ -19,9 +19,9 @@ from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight
 from pierburg_ros.diagnosis.search.witness import Witness, witnessed
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 

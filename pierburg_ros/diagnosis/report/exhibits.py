@@ -11,9 +11,9 @@ from pierburg_ros.diagnosis.report.tried import OFF, rivals
 from pierburg_ros.diagnosis.result import Exhibits, Tried, View
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run, Switch
+from pierburg_ros.inference.coordinates import without_effects
 from pierburg_ros.plant import Model
 
 Simulated = tuple[Model, Switch | None]

@@ -47,12 +47,12 @@ from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.diagnosis.verdict.shares import Shares
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
-from pierburg_ros.estimation.coordinates import without_effects
 from pierburg_ros.estimation.data import Data, rms
 from pierburg_ros.estimation.discrepancy import Kalman
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Variant
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.estimation.run import Run, Switch
+from pierburg_ros.inference.coordinates import without_effects
+from pierburg_ros.inference.explanation import AFTER, WHEN, Variant
 from pierburg_ros.plant import Model
 
 

@@ -12,8 +12,8 @@ from pierburg_ros.diagnosis.search.selection import tied
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.estimation.data import rms
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import WHEN, quantities
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.explanation import WHEN, quantities
 from pierburg_ros.pages.numbers import words
 
 DRAWN = 5

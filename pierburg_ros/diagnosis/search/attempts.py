@@ -17,8 +17,8 @@ from pierburg_ros.diagnosis.search.selection import alike, betters, tied
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.refinement import NEARLY, refined
+from pierburg_ros.inference.explanation import Explanation, jumps
 from pierburg_ros.plant import Model
 
 LEADING = 0.25

@@ -11,7 +11,7 @@ from pierburg_ros.effects import EFFECTS, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant, canonical
+from pierburg_ros.inference.explanation import Explanation, Variant, canonical
 from pierburg_ros.plant import Model
 
 Addition = str | Variant

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import without
+from pierburg_ros.inference.explanation import without
 
 
 def other_forms(estimator: Estimator, fit: Fit) -> Iterator[Fit]:

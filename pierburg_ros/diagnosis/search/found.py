@@ -18,9 +18,9 @@ from pierburg_ros.diagnosis.search.together import recalibrated
 from pierburg_ros.diagnosis.search.tried import Progress, Tried
 from pierburg_ros.estimation.data import Data, with_validation
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, jumps
 from pierburg_ros.estimation.intervals import Estimate, lowest_with_estimates
 from pierburg_ros.estimation.refinement import lowered
+from pierburg_ros.inference.explanation import Explanation, jumps
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 

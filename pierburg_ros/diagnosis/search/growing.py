@@ -16,9 +16,9 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant, canonical, without
 from pierburg_ros.estimation.first_part import takes_time, where_shown
-from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.inference.explanation import Explanation, Variant, canonical, without
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 FOLLOWED = 5

@@ -11,9 +11,9 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
-from pierburg_ros.estimation.least_squares import TOLERANCE
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.inference.least_squares import TOLERANCE
 from pierburg_ros.plant import Model
 
 REDATED = np.arange(-42.0, 43.0, 2.625)

@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data, all_training
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, quantities, without
+from pierburg_ros.inference.explanation import Explanation, Quantity, Variant, quantities, without
 from pierburg_ros.plant import Model
 
 

@@ -9,8 +9,8 @@ from pierburg_ros.diagnosis.search.attempts import Attempts
 from pierburg_ros.diagnosis.search.scored import scored, settled
 from pierburg_ros.diagnosis.search.selection import names_all
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Variant, without
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.explanation import Variant, without
 
 
 def needed(best: Fit, attempts: Attempts, pool: Executor) -> Fit:

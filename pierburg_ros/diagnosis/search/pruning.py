@@ -10,8 +10,8 @@ from pierburg_ros.diagnosis.search.attempts import Attempts, near
 from pierburg_ros.diagnosis.search.candidates import with_drifts
 from pierburg_ros.diagnosis.search.selection import names_all
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, jumps, quantities, without
 from pierburg_ros.estimation.refinement import NEARLY
+from pierburg_ros.inference.explanation import Explanation, jumps, quantities, without
 
 
 def pruned(attempts: Attempts) -> Fit:

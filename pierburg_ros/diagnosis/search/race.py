@@ -12,8 +12,8 @@ from pierburg_ros.diagnosis.search.linear import redated
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.inference.explanation import Explanation
 
 ROUNDS = 4
 """Number of iterations after which the best are chosen for a full fit; after half of them, those far behind drop out.

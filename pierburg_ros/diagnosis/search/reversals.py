@@ -19,7 +19,7 @@ from pierburg_ros.effects import Effect
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Kalman, evidence, share, way
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Variant
+from pierburg_ros.inference.explanation import Variant
 
 TURNED = 4.0
 """Movement back, in standard deviations of the noise, that counts as a reversal. Derived: white noise goes so far with

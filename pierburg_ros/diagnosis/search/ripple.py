@@ -14,9 +14,9 @@ from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Ripple
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.first_part import takes_time, where_shown
-from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.inference.explanation import Explanation, Variant
+from pierburg_ros.inference.least_squares import BRIEF
 
 AMPLITUDE = 0.0022
 """Amplitude from which descents start, as a share of the stall torque. Measured: with the right drift, a descent leads

@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search.selection import alike, gains_enough
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import (
+from pierburg_ros.inference.explanation import (
     AFTER,
     WHEN,
     Explanation,

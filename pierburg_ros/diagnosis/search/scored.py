@@ -10,8 +10,8 @@ from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy, Kalman
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.prior import implausible
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 

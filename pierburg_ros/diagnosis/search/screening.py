@@ -14,8 +14,8 @@ from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.first_part import takes_time, where_shown
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 Promised = tuple[float, dict[str, float]]
 """The chi2 that a linear step promises, and the start that it leads to."""

@@ -18,8 +18,8 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, canonical, jumps, without
 from pierburg_ros.estimation.refinement import NEARLY
+from pierburg_ros.inference.explanation import Explanation, canonical, jumps, without
 from pierburg_ros.plant import Model
 
 

@@ -16,8 +16,8 @@ from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, idle
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, id_of, quantities
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.explanation import Explanation, Quantity, Variant, id_of, quantities
 from pierburg_ros.plant import Model
 
 MOST = 4

@@ -17,7 +17,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.diagnosis.search.attempts import Attempts, far_below
 from pierburg_ros.diagnosis.search.needed import needed
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant, without
+from pierburg_ros.inference.explanation import Explanation, Variant, without
 
 INDEPENDENT = 1e-3
 """Share of a parameter's change of the signal that the other parameters cannot make; below it, the parameter adds

@@ -14,10 +14,10 @@ from pierburg_ros.diagnosis.search.together import needless
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Quantity, Variant, jumps, moments, quantities, without
-from pierburg_ros.estimation.least_squares import BRIEF
 from pierburg_ros.estimation.likelihood import SIGNIFICANT
 from pierburg_ros.estimation.refinement import lowered
+from pierburg_ros.inference.explanation import Explanation, Quantity, Variant, jumps, moments, quantities, without
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 
 

@@ -25,9 +25,9 @@ from pierburg_ros.audit.loop import EXACT, free_of_limits
 from pierburg_ros.audit.signals import Signals
 from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.effects import Effect
-from pierburg_ros.estimation.explanation import Variant
 from pierburg_ros.estimation.intervals import HALF_KNOWN, Estimate
 from pierburg_ros.estimation.likelihood import TIED, repetition
+from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded

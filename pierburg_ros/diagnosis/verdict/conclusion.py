@@ -15,9 +15,9 @@ from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
 from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.intervals import Estimate
 from pierburg_ros.estimation.likelihood import OFF_GRID
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 
 FEWEST = 2.0**-8

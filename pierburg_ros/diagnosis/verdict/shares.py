@@ -12,8 +12,8 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Variant, without
 from pierburg_ros.estimation.likelihood import counted
+from pierburg_ros.inference.explanation import Variant, without
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.selection import tied
-from pierburg_ros.estimation.explanation import Quantity, Variant, id_of, quantities
+from pierburg_ros.inference.explanation import Quantity, Variant, id_of, quantities
 
 
 @dataclass(frozen=True)

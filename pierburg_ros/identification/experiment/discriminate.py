@@ -15,12 +15,12 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.refinement import COARSEST
 from pierburg_ros.identification.experiment.excitation import DUTY_RECIPES, duty_sequence
 from pierburg_ros.identification.experiment.explanations import refitted_names
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
 from pierburg_ros.identification.fit import fit
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 
 SEGMENTS = 4

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.covariance import RANK
 from pierburg_ros.identification.fit import Identified
+from pierburg_ros.inference.covariance import RANK
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.braking import braking
 

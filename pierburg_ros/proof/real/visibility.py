@@ -13,8 +13,8 @@ from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data, all_training, data_of, rms
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
-from pierburg_ros.estimation.least_squares import BRIEF
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.visibility import VISIBLE
 from pierburg_ros.recording import Recording

@@ -21,9 +21,9 @@ from pierburg_ros.diagnosis.disturbance.window import confined
 from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.found import search
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.likelihood import EXPLAINED
-from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.inference.data import inputs_of
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.plant import simulate
 from pierburg_ros.recording import Channel
 

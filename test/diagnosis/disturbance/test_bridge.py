@@ -7,7 +7,7 @@ import pytest
 from support.recordings import NOISE, NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.disturbance.bridge import OpenBridge, opened
-from pierburg_ros.estimation.run import inputs_of
+from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import simulate
 
 ONE = recording({})

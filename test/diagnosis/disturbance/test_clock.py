@@ -11,8 +11,8 @@ from pierburg_ros.diagnosis.disturbance.apart import with_other_clock
 from pierburg_ros.diagnosis.disturbance.clock import OtherClock, other_clock
 from pierburg_ros.diagnosis.disturbance.moments import exact
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.estimation.likelihood import EXPLAINED
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.recording import Channel
 
 ONE = recording({})

@@ -8,8 +8,8 @@ from pierburg_ros.diagnosis.disturbance.rounding import Rounding, between_steps
 from pierburg_ros.diagnosis.search.selection import allowance
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording import Channel, Recording
 

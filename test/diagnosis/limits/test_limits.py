@@ -11,9 +11,9 @@ from pierburg_ros.diagnosis.limits.held import Case, Held
 from pierburg_ros.diagnosis.limits.limits import Limit, limits
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.coordinates import Coordinates
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.coordinates import Coordinates
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LUMPS = Explanation(("armature_resistance", "spring_preload", "coulomb_friction"))
 SOME = {"input_delay", "pwm_deadband", "gear_compliance"}

@@ -9,7 +9,7 @@ from support.recordings import NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.remainder.left_out import FOLDS, Parts, by_chance, folds_of, gain, helps, parts_of, said_of
 from pierburg_ros.estimation.data import all_training
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 
 def parts(*errors: float, stretches: float = 10.0, improbable: float = 0.0) -> Parts:

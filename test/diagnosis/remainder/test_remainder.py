@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.remainder.standing import Standing
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 

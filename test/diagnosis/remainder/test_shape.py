@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.remainder import shape as module
 from pierburg_ros.diagnosis.remainder.recalibrations import recalibrations
 from pierburg_ros.diagnosis.remainder.shape import Shape, Way, described, described_over_time, fit_shape, nodes
 from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import read_model
 from pierburg_ros.recording import read_recording
 

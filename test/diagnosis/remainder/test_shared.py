@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.remainder.left_out import LeftOut, folds_of
 from pierburg_ros.diagnosis.remainder.shared import Bench, Round, Shared, shared_effects, thinned, undrifted
 from pierburg_ros.estimation.data import all_training
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 

@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
 from pierburg_ros.diagnosis.search.supported import Beside
 from pierburg_ros.diagnosis.search.weighing import Supported, Weight
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 STIFFER = {"spring_stiffness": 0.17}
 TRUE = made_up(Explanation(tuple(STIFFER)), 1.0, NOMINAL.with_values(STIFFER))

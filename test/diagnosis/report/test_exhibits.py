@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.report.figures import apart
 from pierburg_ros.diagnosis.report.places import Place, places
 from pierburg_ros.diagnosis.report.tried import shortened
 from pierburg_ros.diagnosis.schema import Location, RuledOut
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.plant import Model
 
 NOMINAL = Model.nominal(read_actuator("pierburg"))

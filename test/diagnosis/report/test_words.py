@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.report.words import advice, cautioned, needless, rea
 from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
 from pierburg_ros.diagnosis.search.weighing import Weight
 from pierburg_ros.diagnosis.verdict.conclusion import Support
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 RIVAL = made_up(Explanation(("coulomb_friction",), (Variant("backlash", ("gap",)),)), 1.2, NOMINAL)
 TIED = Effect(

@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.search import attempts
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.diagnosis.search.selection import TIED
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LOAD = Variant("external_load", ("torque", "start", "end"))
 

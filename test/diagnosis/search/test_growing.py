@@ -8,7 +8,7 @@ from pierburg_ros.diagnosis.search.growing import anew, drifted, grown
 from pierburg_ros.diagnosis.search.scored import estimator_beside, scored, settled
 from pierburg_ros.diagnosis.search.selection import PROMISING
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.workers import workers
 
 STICKS = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))

@@ -10,9 +10,9 @@ from pierburg_ros.diagnosis.search.candidates import starts_of
 from pierburg_ros.diagnosis.search.linear import change_starts, largest_mark, promised, promised_left, redated
 from pierburg_ros.estimation.data import all_training, data_of
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.recording import Recording
 
 LAG = Variant("sensor_lag", ("time_constant",))

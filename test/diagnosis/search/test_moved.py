@@ -9,7 +9,7 @@ from support.recordings import NOISE, NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.search.moved import moved
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 DELAY, LOAD = Variant("input_delay", ("delay",)), Variant("external_load", ("torque", "start", "end"))
 LATE = {"input_delay.delay": 0.02}

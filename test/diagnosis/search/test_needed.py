@@ -15,7 +15,7 @@ from pierburg_ros.diagnosis.search.needed import needed
 from pierburg_ros.diagnosis.search.together import drift_together
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))
 LOAD = Variant("external_load", ("torque", "start", "end"))

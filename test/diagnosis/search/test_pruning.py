@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.search.beam import Beam
 from pierburg_ros.diagnosis.search.pruning import pruned
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation
 
 THREE = Explanation((), tuple(variant for one in (ONES[3], ONES[2], ONES[0]) for variant in one.variants))
 """Play, where events jump, a dead band and a lag."""

@@ -12,7 +12,7 @@ from pierburg_ros.diagnosis.search import race as race_of
 from pierburg_ros.diagnosis.search.race import ROUNDS, winners
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 SMOOTH = tuple(

@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.search import search as module
 from pierburg_ros.diagnosis.search.screening import Candidate
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 
 @pytest.mark.parametrize(

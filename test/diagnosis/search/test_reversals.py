@@ -14,7 +14,7 @@ from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.proof.real.channels import with_effect
 
 WIDTH = 0.05

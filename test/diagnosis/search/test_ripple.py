@@ -11,7 +11,7 @@ from pierburg_ros.diagnosis.search.linear import promised
 from pierburg_ros.diagnosis.search.ripple import between_rests, ripples
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 COGGING = Variant("cogging_torque", ("amplitude", "periods_per_motor_revolution", "phase"))
 PULSATION = Variant("external_load", ("amplitude", "frequency", "phase"))

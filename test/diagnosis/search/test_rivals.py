@@ -13,8 +13,8 @@ from pierburg_ros.diagnosis.search.rivals import fit_rivals
 from pierburg_ros.diagnosis.search.search import Search
 from pierburg_ros.estimation.data import data_of, in_parts
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import AFTER, Explanation, Variant, quantities, without
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.explanation import AFTER, Explanation, Variant, quantities, without
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 

@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.screening import Candidate, most_promising, screened
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 pytestmark = pytest.mark.search
 

@@ -21,7 +21,7 @@ from pierburg_ros.diagnosis.search.weighing import Supported
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.discrepancy import Discrepancy
 from pierburg_ros.estimation.estimator import Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LAGS, STICKS = ONES[0], Explanation((), (Variant("static_friction", ("x",)),))
 

@@ -7,8 +7,8 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.search.selection import allowance, betters, gain, names_all, overlooks, tied
 from pierburg_ros.estimation.estimator import Estimator, Fit, adequate
-from pierburg_ros.estimation.explanation import Explanation, Variant
 from pierburg_ros.estimation.likelihood import EXPLAINED, SIGNIFICANT
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 LAG = Variant("sensor_lag", ("time_constant",))
 TRUE = {"sensor_lag.time_constant": 0.012}

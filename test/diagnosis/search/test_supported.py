@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight, 
 from pierburg_ros.errors import InputError
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.workers import workers
 
 DELAY = Variant("input_delay", ("delay",))

@@ -10,7 +10,7 @@ from support.recordings import NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.diagnosis.search.together import drifting_apart, drifting_fewer, needless
 from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 DRIFTS = drifting(NOMINAL)
 TRUE = {"armature_resistance": 5.2, "coulomb_friction": 0.16, "sensor_lag.time_constant": 0.012}

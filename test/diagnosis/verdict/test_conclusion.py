@@ -14,8 +14,8 @@ from pierburg_ros.diagnosis.remainder.shape import Shape
 from pierburg_ros.diagnosis.search.found import Found, search
 from pierburg_ros.diagnosis.verdict.conclusion import Conclusion, conclude, verdict_on
 from pierburg_ros.estimation.data import Data, data_of
-from pierburg_ros.estimation.explanation import WHEN, Explanation, Variant
 from pierburg_ros.estimation.run import Switch
+from pierburg_ros.inference.explanation import WHEN, Explanation, Variant
 from pierburg_ros.recording import Channel, Recording
 
 pytestmark = pytest.mark.search

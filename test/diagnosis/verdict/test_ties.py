@@ -8,7 +8,7 @@ from pierburg_ros.diagnosis.search.selection import TIED
 from pierburg_ros.diagnosis.verdict.ties import Alternative, alternatives
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant
 
 VISCOUS = Variant("viscous_friction", ("coefficient",))
 LAG = Variant("sensor_lag", ("time_constant",))

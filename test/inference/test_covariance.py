@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.estimation.covariance import correlation_length, covariance_of
+from pierburg_ros.inference.covariance import correlation_length, covariance_of
 
 
 def autoregressive(size, memory, seed):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant, canonical, quantities, without
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant, canonical, quantities, without
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
 LAG = Variant("sensor_lag", ("time_constant",))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.estimation.least_squares import minimise
+from pierburg_ros.inference.least_squares import minimise
 
 STEP = np.full(2, 1e-5)
 

@@ -11,7 +11,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import ADDED, DECLARED, EFFECT, GEARED
 from pierburg_ros.effects.effect import HIGHEST_SHARE
-from pierburg_ros.estimation.explanation import AFTER, WHEN
+from pierburg_ros.inference.explanation import AFTER, WHEN
 from pierburg_ros.plant import Model
 
 DRIFT = math.log(6.0)

@@ -8,8 +8,8 @@ from support.recordings import NOMINAL, PIERBURG, data_on, recording
 
 from pierburg_ros.diagnosis.search.candidates import possible, starts_of
 from pierburg_ros.effects.effect import Start
-from pierburg_ros.estimation.coordinates import Coordinates, in_order, without_effects
-from pierburg_ros.estimation.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.inference.coordinates import Coordinates, in_order, without_effects
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.plant import Model
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
