@@ -15,7 +15,7 @@ from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.intervals import covariance
 from pierburg_ros.estimation.likelihood import EXPLAINED
 from pierburg_ros.estimation.refinement import COARSEST, refined
-from pierburg_ros.estimation.slopes import FINE
+from pierburg_ros.inference.slopes import FINE
 from pierburg_ros.inference.covariance import RANK, Covariance
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model

@@ -13,7 +13,7 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.estimation.data import data_of
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.likelihood import SURE
-from pierburg_ros.estimation.slopes import sharp
+from pierburg_ros.inference.slopes import sharp
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
