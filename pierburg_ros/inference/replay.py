@@ -24,13 +24,13 @@ def forgets(actuator: Actuator) -> bool:
     return actuator.load == "spring" or actuator.drive == "voltage"
 
 
-def longest_pull(actuator: Actuator, time: Signal) -> float:
-    """Time constant [s] with which a replay is pulled to samples at each `time` [s]; infinite where none is needed.
+def pull_of(actuator: Actuator, period: float) -> float:
+    """Time constant [s] with which a replay is pulled to samples a `period` [s] apart; infinite where none is needed.
 
     A pendulum or a free rotor driven by a current or a torque forgets nothing. Its simulation drifts from any recording
-    for ever, so it is pulled as weakly as a fit is at its end.
+    for ever, so it is pulled with the actuator's own time.
     """
-    return math.inf if forgets(actuator) else rungs(actuator, float(np.median(np.diff(time))))[-1]
+    return math.inf if forgets(actuator) else rungs(actuator, period)[0]
 
 
 def with_known_input(recording: Recording, actuator: Actuator) -> Recording:
@@ -55,7 +55,9 @@ def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
     nominal = Model.nominal(model.actuator)
     kept = with_known_input(recording, model.actuator)
     run = run_of(kept, nominal, 0, np.zeros(kept.time.size, dtype=np.int64))
-    simulated = simulated_run(model, run, longest_pull(model.actuator, run.time), after_unknown(kept))
+    simulated = simulated_run(
+        model, run, pull_of(model.actuator, float(np.median(np.diff(run.time)))), after_unknown(kept)
+    )
     refuse_unsimulated(model, simulated, run.time)
     return kept, in_unit_of(kept, nominal, simulated)
 
