@@ -6,15 +6,19 @@ beside the effect. No search is asked: only the recording as it is, its model, a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.data import Data, all_training, data_of, rms
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.data import all_fitted
+from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fitter, ladder
 from pierburg_ros.inference.least_squares import BRIEF
+from pierburg_ros.inference.motion import motion_of
+from pierburg_ros.inference.replay import pull_of
+from pierburg_ros.inference.search import free_parameters
+from pierburg_ros.inference.shortlist import independent
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.visibility import VISIBLE
 from pierburg_ros.recording import Recording
@@ -24,8 +28,8 @@ from pierburg_ros.recording import Recording
 class Visibility:
     """How far a change stands out of what remains.
 
-    `distance` is squared, from the nearest single drift, in standard deviations of what remains: the innovations of the
-    likeliest discrepancy beside the noise. `moves` is what the change leaves in the signal once all that may drift is
+    `distance` is squared, from the nearest single drift, in standard deviations of what remains, in effective samples
+    of that. `moves` is what the change leaves in the signal once all that may drift is
     refitted, `remains` what the model without it misses then; root mean squares in the measured unit.
     """
 
@@ -42,21 +46,22 @@ class Visibility:
 def visibility(recording: Recording, model: Model, changed: Model, name: str) -> Visibility:
     """Judge what changes a `recording` of a machine like `model` as it changes that to `changed`, by the number `name`.
 
-    Behind a filter of the input, whose time each recording tells anew, what comes late is not told from a shorter one.
     InputError where the recording cannot be used.
     """
-    data = all_training(data_of([recording], model))
-    target = replace(data, runs=tuple(replace(run, measured=run.simulated(changed)) for run in data.runs))
-    drifts = tuple(each for each in drifting(model) if each != name)
-    remains = scored(data, Estimator(data, model).at(Explanation())).discrepancy
-    beside = Estimator(target, model, discrepancy=remains)
-    nearest = min(beside.fit(Explanation((drift,)), iterations=BRIEF).chi2 for drift in drifts)
-    effect = EFFECT.get(name.partition(".")[0])
-    if effect and effect.late and data.input_filtered:
-        nearest = 0.0
-    return Visibility(nearest, _left(target, model, drifts), _left(data, model, drifts))
+    data = all_fitted([recording], model)
+    fitter = Fitter(data, model, pull_of(model.actuator, data.period))
+    (run,) = data.runs
+    answer = run.measured - fitter.residual(changed) * data.noise
+    put_in = replace(fitter, data=replace(data, runs=(replace(run, measured=answer),)))
+    drifts = tuple(each for each in free_parameters(model) if each != name)
+    nearest = min(put_in.fit(Explanation((drift,)), model.values, BRIEF).chi2 for drift in drifts)
+    remains = fitter.fit(Explanation(), model.values, 0)
+    told = independent(Balance(data.actuator, (motion_of(run, model, ladder(data)[0]),)), model, drifts)
+    distance = nearest / max(remains.ratio**2 * remains.repetition, 1.0)
+    return Visibility(distance, _left(put_in, told), _left(fitter, told))
 
 
-def _left(data: Data, model: Model, drifts: tuple[str, ...]) -> float:
+def _left(fitter: Fitter, drifts: Sequence[str]) -> float:
     """What all that may drift leaves of measured signals, root mean square in the measured unit."""
-    return rms(Estimator(data, model).fit(Explanation(drifts), iterations=BRIEF).solution.residual) * data.noise
+    found = fitter.fit(Explanation(tuple(drifts)), fitter.nominal.values, BRIEF)
+    return rms(found.residual) * fitter.data.noise
