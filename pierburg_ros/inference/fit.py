@@ -20,7 +20,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data, Run
-from pierburg_ros.inference.evidence import beyond, repetition, structure
+from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, beyond, repetition, structure
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.inference.least_squares import FULL, Solution, jacobian, minimise
 from pierburg_ros.plant import Model
@@ -148,16 +148,20 @@ class Fitter:
         parts = []
         for run, pull in zip(self.data.runs, self.pulls, strict=True):
             self.effort.count()
-            simulated = follow(model, run.inputs, run.time, run.measured, _start(run, model), pull, self.data.per_unit)
-            if after is not None:
-                self.effort.count()
-                other = follow(after, run.inputs, run.time, run.measured, _start(run, after), pull, self.data.per_unit)
-                simulated = np.where(run.time < when, simulated, other)
+            start = _start(run, model)
+            simulated = follow(model, run.inputs, run.time, run.measured, start, pull, self.data.per_unit, after, when)
             parts.append(run.measured - simulated)
         left = np.concatenate(parts) / self.data.noise
         unknown = np.flatnonzero(~np.isfinite(left))
         left[unknown] = UNSIMULATED * (1.0 - 2.0 * (unknown % 2))
         return np.asarray(np.clip(left, -WILD, WILD))
+
+    def moment(self, model: Model, after: Model) -> float:
+        """When [s] `after` had best take over from `model` in the only run: a fit moves a moment by samples."""
+        before, later = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (model, after))
+        counted = self.data.train
+        cost = np.cumsum(np.where(counted, before - later, 0.0))
+        return float(self.data.runs[0].time[int(np.argmin(cost))])
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which the quantities of an explanation are searched."""
@@ -223,6 +227,16 @@ def inertia_time(model: Model) -> float:
     """Time [s] in which friction that grows with speed and back-EMF stop a shaft; infinite without any."""
     brake = braking(model)
     return model.values.get("total_inertia", 0.0) / brake if brake > 0.0 else math.inf
+
+
+def adequate(fit: Fit) -> bool:
+    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time."""
+    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
+
+
+def excess(fit: Fit) -> float:
+    """Mean square [noise^2] that a fit leaves above the noise; 0 where it leaves nothing but noise."""
+    return 0.0 if adequate(fit) else max(fit.ratio**2 - 1.0, 0.0)
 
 
 def rms_of(fit: Fit, samples: Flags) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
-from pierburg_ros.estimation.run import Run
+from pierburg_ros.inference.data import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded, turned
 

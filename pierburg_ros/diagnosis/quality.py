@@ -12,22 +12,16 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Flags
-from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion, motion_of
+from pierburg_ros.diagnosis.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
-from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.run import Run
-from pierburg_ros.estimation.shooting import forgets
-from pierburg_ros.plant import Model
-from pierburg_ros.recording import Recording
+from pierburg_ros.inference.data import GAP, Run
 
 Kind = Literal[
     "no_movement",
     "constant_duty",
     "saturated",
-    "begins_moving",
     "short",
     "slow_sampling",
-    "filtered_input",
     "gaps",
     "one_direction",
     "closed_stop",
@@ -35,13 +29,6 @@ Kind = Literal[
     "little_travel",
 ]
 
-SHORTEST = 21.0
-"""Duration below which nothing can be fitted and judged, in the actuator's own time. Chosen: 2 s for the valve, less
-than two of its time constants, 1.15 s each; not varied. An actuator that does not forget its initial state has no such
-limit: it is fitted in stretches."""
-FEWEST = 200
-"""Number of samples below which nothing can be fitted and judged. Chosen: ten for each parameter and value of an
-effect; not varied."""
 SHORT = 105.0
 """Duration below which rare events and slow changes are not detected, in the actuator's own time. Chosen: 10 s for the
 valve; it adds advice and decides no verdict."""
@@ -53,8 +40,6 @@ WANTED = 5.0
 SATURATED = 0.9
 """Share of time at full duty from which a recording counts as saturated throughout. Chosen: a tenth of the time is left
 to identify friction and spring; not varied."""
-GAP = 3.0
-"""Length from which an interval is a gap, in median intervals. Given: `gaps` is defined so in diagnosis.json."""
 MOST_GAPS = 0.02
 """Share of time in gaps above which they count as many. Chosen: it adds advice and decides no verdict."""
 SHORT_TRAVEL = 0.22
@@ -65,10 +50,8 @@ RECORD: dict[Kind, str] = {
     "no_movement": "Record again with {input} steps large enough to move the shaft both ways.",
     "constant_duty": "Record again with {input} steps of several sizes.",
     "saturated": "Record again with {input} steps well within the limits, up and down.",
-    "begins_moving": "Start recording before the shaft moves: how fast it moved at first is not known.",
     "short": "Record a minute, with movements in both directions: less does not show what is rare or grows with time.",
     "slow_sampling": "Record with a shorter sample period: short delays and lags do not show.",
-    "filtered_input": "Record the {input} without a filter: a delay, and a lag of the sensor, do not show behind one.",
     "gaps": "Samples are missing: record on an idle machine, or with the recorder's queue made longer.",
     "one_direction": "To tell friction from the load, record opening and closing over the same angles.",
     "little_travel": "To see what depends on the angle, record movements over the whole travel.",
@@ -96,18 +79,6 @@ class Limit:
     def record(self) -> str:
         """What to record next to remove this limit."""
         return RECORD[self.kind].format(input=self.input)
-
-
-def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None:
-    """Raise InputError if a recording is too short to be fitted and judged."""
-    shortest = SHORTEST * actuator.scales.time if forgets(actuator) else 0.0
-    for recording in recordings:
-        if recording.time.size < FEWEST or recording.duration < shortest:
-            raise InputError(
-                f"{recording.name} is too short ({recording.time.size} samples over {recording.duration:#.3g} s);"
-                f" expected at least {FEWEST} samples over {shortest:.2g} s. Record longer: a minute with"
-                " movements in both directions tells most."
-            )
 
 
 def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
@@ -138,7 +109,6 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     motions = [motion_of(run, actuator, noise) for run in runs]
     limits = [
         *_limits_of_movement(motions, runs, noise),
-        *_limits_of_start(runs, actuator),
         *_limits_of_sampling(runs, actuator),
         *_limits_of_reach(motions),
     ]
@@ -180,29 +150,6 @@ def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: f
     return limits
 
 
-def _limits_of_start(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
-    limits = []
-    late = [run.time[0] for run in runs if run.time[0] > 0.0]
-    if late:
-        limits.append(
-            Limit(
-                "begins_moving",
-                f"The shaft moves when recording begins: the first {max(late):.3g} s, up to its first standstill, are"
-                " left out, for how fast it moved there cannot be told well enough.",
-            )
-        )
-    nominal = Model.nominal(actuator)
-    if any(run.start.state(nominal, run.quantity)[1] != 0.0 and not run.start.known for run in runs):
-        limits.append(
-            Limit(
-                "begins_moving",
-                "The shaft moves when recording begins and does not stand still soon: an error of the velocity"
-                " there passes for missing physics.",
-            )
-        )
-    return limits
-
-
 def _limits_of_sampling(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
     limits, scales = [], actuator.scales
     duration = sum(float(run.time[-1] - run.time[0]) for run in runs)
@@ -222,15 +169,6 @@ def _limits_of_sampling(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
                 "slow_sampling",
                 f"The signal is sampled at {1.0 / median:.3g} Hz: short delays and lags cannot be told apart (they"
                 f" could at {WANTED * SLOW_SAMPLING / scales.time:.2g} Hz).",
-            )
-        )
-    filtered = max(run.input_lag for run in runs)
-    if filtered > 0.0:
-        limits.append(
-            Limit(
-                "filtered_input",
-                f"The {actuator.input} was recorded behind a filter of {filtered:.2g} s, as it seems: a delay, or a lag"
-                " of the sensor, is not told from a shorter filter.",
             )
         )
     lost = float(np.sum(intervals[intervals > GAP * median]))
