@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.run import resimulated
+from pierburg_ros.inference.replay import resimulated
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -104,6 +104,6 @@ class Comparison:
 
 
 def compare(model: Model, recording: Recording) -> Comparison:
-    """`recording` beside the answer of `model` to its inputs, from where the shaft is first seen at rest."""
+    """`recording` beside the answer of `model` to its inputs, after each stretch of unknown input begun anew."""
     recording, simulated = resimulated(model, recording)
     return Comparison(recording, model, simulated)

@@ -14,10 +14,10 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.estimation.estimator import Estimator, Fit
 from pierburg_ros.estimation.likelihood import SURE, TIED
-from pierburg_ros.estimation.slopes import FINE, sharp
 from pierburg_ros.inference.covariance import Covariance, covariance_of
 from pierburg_ros.inference.explanation import WHEN, jumps
 from pierburg_ros.inference.least_squares import BRIEF, Solution
+from pierburg_ros.inference.slopes import FINE, sharp
 
 DOUBLINGS = 7
 """Largest number of times that the reach of an interval is doubled: up to 128 times the reach from the curvature. Work:

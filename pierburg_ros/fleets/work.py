@@ -146,7 +146,7 @@ def measured(asked: Measurement, task: Task) -> dict[str, Any]:
         with at_hand(asked.source.path) as path:
             recording = task.read(path)
         model: Model = task.nominal.with_values(asked.effects)
-        found = fit(model, [recording], asked.names, starts=1, refine=False, jobs=1)
+        found = fit(model, [recording], asked.names, jobs=1)
     except (InputError, OSError, np.linalg.LinAlgError) as error:
         return {"problem": one_line(str(error)), "values": {}}
     values = {}

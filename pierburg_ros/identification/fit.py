@@ -1,7 +1,8 @@
-"""Fits of an actuator's parameters to whole recordings, from several starts, as exact as the noise allows."""
+"""Fits of an actuator's parameters to whole recordings, by a simulation that is pulled to them ever more weakly."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,28 +11,24 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.data import data_of, rms
-from pierburg_ros.estimation.estimator import Estimator, Fit
-from pierburg_ros.estimation.intervals import covariance
-from pierburg_ros.estimation.likelihood import EXPLAINED
-from pierburg_ros.estimation.refinement import COARSEST, refined
-from pierburg_ros.estimation.slopes import FINE
-from pierburg_ros.inference.covariance import RANK, Covariance
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.covariance import Covariance, covariance_of
+from pierburg_ros.inference.data import Data, all_fitted
+from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fit, Fitter, ladder
+from pierburg_ros.inference.intervals import by_run, slopes_at
+from pierburg_ros.inference.motion import motion_of
+from pierburg_ros.inference.replay import forgets
+from pierburg_ros.inference.shortlist import balanced
 from pierburg_ros.plant import Model
-from pierburg_ros.recording.recording import Recording
+from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
-ITERATIONS = 30
-"""Number of iterations after which a descent that still gains ends. Work: it bounds a fit that continues only for a
-tolerance of 1e-7; not varied."""
-NOTICEABLE = 1e-3
-"""Share of the cost below which a gain no longer counts. A descent with wide differences then ends; a cost is rough
-where one more linear step predicts a larger gain. Derived: in 30,000 samples chance alone changes the cost by 0.8 %,
-one parameter by 3e-5."""
-SPREAD = 0.4
-"""Standard deviation of further starts, in coordinates: 40 % of a positive parameter. Chosen: about what a parameter of
-another specimen may differ by; not varied."""
+FEWEST = 20
+"""Moments of motion for each parameter from which a balance gives a start. Derived: neighbouring moments share most of
+a window, so that these are some five independent ones."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +36,19 @@ class Identified:
     """A fitted model with the uncertainty of its free parameters.
 
     `covariance` and `slopes`, shape (samples, names), are for the coordinates of the search: relative changes for
-    positive base parameters. `slopes` are in units of the noise.
+    positive base parameters. `slopes` are in units of the noise. `per_unit` is one unit of the sensor in the unit of
+    the recordings, 1 but for an angle recorded in the place of a Hall voltage.
     """
 
-    estimator: Estimator
     fit: Fit
     covariance: Covariance
     slopes: Signal
+    per_unit: float
+
+    @property
+    def fitter(self) -> Fitter:
+        """What made the fit."""
+        return self.fit.fitter
 
     @property
     def model(self) -> Model:
@@ -63,15 +66,26 @@ class Identified:
         return {name: self.fit.values[name] for name in self.names}
 
     @property
+    def unit(self) -> float:
+        """The noise in the measured unit."""
+        return self.fitter.data.noise * abs(self.per_unit)
+
+    @property
     def noise(self) -> float:
         """Standard deviation of the residual, in the measured unit, with the degrees of freedom of the fit."""
-        return self.covariance.noise * self.estimator.data.noise
+        return self.covariance.noise * self.unit
 
     @cached_property
     def residuals(self) -> tuple[Signal, ...]:
-        """Measured minus simulated, one array for each run, in the measured unit."""
-        lengths = [run.time.size for run in self.estimator.data.runs]
-        return tuple(np.split(self.fit.solution.residual * self.estimator.data.noise, np.cumsum(lengths)[:-1]))
+        """Measured minus simulated, one array for each run, in the measured unit.
+
+        The simulation runs free where the actuator forgets its beginning, otherwise pulled as at the end of the fit.
+        """
+        data = self.fitter.data
+        free = self.fitter.pulled(math.inf) if forgets(data.actuator) else self.fitter
+        lengths = [run.time.size for run in data.runs]
+        left = free.residual(self.model) * data.noise * self.per_unit
+        return tuple(np.split(left, np.cumsum(lengths)[:-1]))
 
     @property
     def rmse(self) -> float:
@@ -86,7 +100,7 @@ class Identified:
     @cached_property
     def ci95(self) -> dict[str, tuple[float, float]]:
         """95 % intervals, in the parameters' units; the whole range where nothing is known."""
-        coordinates = self.estimator.coordinates(self.fit.explanation)
+        coordinates = self.fitter.coordinates(self.fit.explanation)
         reach = np.diag(self.covariance.factor * self.deviation)
         ends = [
             (coordinates.values(self.fit.solution.point - move), coordinates.values(self.fit.solution.point + move))
@@ -104,72 +118,51 @@ class Identified:
         return np.asarray(self.covariance.matrix / np.outer(spread, spread))
 
 
-def fit(
-    model: Model,
-    recordings: Sequence[Recording],
-    free: Sequence[str],
-    *,
-    starts: int = 3,
-    refine: bool = True,
-    tolerance: float = 1e-7,
-    seed: int = 0,
-    jobs: int | None = None,
-) -> Identified:
+def fit(model: Model, recordings: Sequence[Recording], free: Sequence[str], jobs: int | None = None) -> Identified:
     """Fit the parameters `free` (dotted names) of `model` to `recordings`; the others stay as they are.
 
-    The first start is `model` itself. While the RMSE stays above the noise, up to `starts` are tried; the further ones
-    are chosen among random points. Where the cost is too rough for its slope and `refine` is true, the fit searches for
-    other local minima from there. `jobs` simulations run at a time, by default one for each core.
+    One fit starts from `model` itself, one from the balance of torques along the motion; `jobs` fits run at a time.
     """
     if not free:
         raise InputError("There is no free parameter to fit; expected one or more. Free one.")
+    fitter = fitter_of(recordings, model)
+    starts = [model.values, *balanced_starts(fitter, free)]
     with workers(jobs) as pool:
-        estimator = Estimator(data_of(recordings, model), model, pool.map)
-        return _fitted(estimator, Explanation(tuple(free)), starts, refine, tolerance, seed)
+        found = list(pool.map(lambda start: climbed(fitter, Explanation(tuple(free)), start), starts))
+    return identified(min(found, key=lambda each: each.chi2), recordings)
 
 
-def _fitted(
-    estimator: Estimator, explanation: Explanation, starts: int, refine: bool, tolerance: float, seed: int
-) -> Identified:
-    best = _descend(estimator, estimator.at(explanation), tolerance, refine)
-    for start in _further_starts(estimator, explanation, starts - 1, seed):
-        if best.ratio <= EXPLAINED:
-            break
-        best = min(best, _descend(estimator, start, tolerance, refine), key=lambda fit: fit.chi2)
-    known, slopes = covariance(estimator, best)
-    return Identified(Estimator(estimator.data, estimator.nominal), best, known, slopes)
+def fitter_of(recordings: Sequence[Recording], model: Model) -> Fitter:
+    """What fits `model` to all samples of `recordings`, with the strongest pull."""
+    data = all_fitted(recordings, model)
+    return Fitter(data, model, ladder(data)[0])
 
 
-def _descend(estimator: Estimator, start: Fit, tolerance: float, refine: bool) -> Fit:
-    """A minimum near `start`: wide differences first, to look across stick and slip, then as fine as noise allows."""
-    coordinates = estimator.coordinates(start.explanation)
-    wide, fine = COARSEST * coordinates.steps, np.full(coordinates.steps.size, FINE)
-
-    def descended(fit: Fit, steps: Signal, until: float) -> Fit:
-        return estimator.fit(fit.explanation, fit.values, ITERATIONS, steps=steps, tolerance=until)
-
-    found = descended(descended(start, wide, max(tolerance, NOTICEABLE)), fine, tolerance)
-    if refine and _is_rough(found, *coordinates.bounds):
-        found = descended(refined(estimator, found), fine, tolerance)
+def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) -> Fit:
+    """The fit of an explanation from some `values`, pulled ever more weakly."""
+    found = fitter.fit(explanation, values)
+    for constant in ladder(fitter.data)[1:]:
+        found = fitter.pulled(constant).fit(explanation, found.values)
     return found
 
 
-def _is_rough(fit: Fit, lower: Signal, upper: Signal) -> bool:
-    """Whether the slope at a fit predicts a reduction that the descent did not find."""
-    point, residual, slopes = fit.solution.point, fit.solution.residual, fit.solution.jacobian
-    inside = (point > lower + 1e-6) & (point < upper - 1e-6)
-    if not inside.any():
-        return False
-    change = np.linalg.lstsq(slopes[:, inside], residual, rcond=RANK)[0]
-    return bool(np.sum((slopes[:, inside] @ change) ** 2) > NOTICEABLE * fit.chi2)
-
-
-def _further_starts(estimator: Estimator, explanation: Explanation, count: int, seed: int) -> list[Fit]:
-    """The `count` best of random starts, best first; empty where `count` is not positive."""
-    if count <= 0:
+def balanced_starts(fitter: Fitter, free: Sequence[str]) -> list[dict[str, float]]:
+    """The values with which torques balance along the motion of the recordings; none where these tell too little."""
+    balance = balance_of(fitter.data, fitter.nominal)
+    if balance.size < FEWEST * len(free):
         return []
-    coordinates = estimator.coordinates(explanation)
-    middle = coordinates.point(estimator.nominal.values)
-    points = middle + SPREAD * np.random.default_rng(seed).standard_normal((4 * count, middle.size))
-    fits = [estimator.at(explanation, coordinates.values(np.clip(point, *coordinates.bounds))) for point in points]
-    return sorted(fits, key=lambda fit: fit.chi2)[:count]
+    nominal = fitter.nominal
+    values, _ = balanced(balance, nominal, free, nominal.values, nominal.active_effects)
+    return [in_order(values, nominal)]
+
+
+def balance_of(data: Data, model: Model) -> Balance:
+    """The balance along the motion of all runs."""
+    return Balance(data.actuator, tuple(motion_of(run, model, ladder(data)[0]) for run in data.runs))
+
+
+def identified(found: Fit, recordings: Sequence[Recording]) -> Identified:
+    """A fit with the uncertainty of its values."""
+    slopes, data = slopes_at(found, found.explanation), found.fitter.data
+    turned = recordings[0].quantity == "position" and data.actuator.quantity == "hall_voltage"
+    return Identified(found, covariance_of(slopes, by_run(found)), slopes, data.per_unit if turned else 1.0)

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from pierburg_ros.actuators.gauge import scaling
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.data import data_of
-from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.likelihood import SURE
-from pierburg_ros.estimation.slopes import sharp
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.intervals import slopes_at
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 
+SURE = 1.96
+"""Standard deviations in half of a 95 % interval. Derived: of a normal distribution."""
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below this share of it. Given: a convention of the
 report, a tenth."""
@@ -51,7 +50,7 @@ def identifiability(fitted: Identified, recordings: Sequence[Recording]) -> dict
     actuator = fitted.model.actuator
     names = tuple(dict.fromkeys([*actuator.parameters, *fitted.names]))
     unit = actuator.shown(recordings[0].unit)
-    trace = _Trace(names, fitted.names, _relative_slopes(fitted, recordings, names), fitted.noise, unit)
+    trace = _Trace(names, fitted.names, _relative_slopes(fitted, names), fitted.noise, unit)
     findings = {name: trace.finding(name) for name in names}
     gauges = (name for name in scaling(actuator) if name not in fitted.names and findings[name].identifiable)
     return findings | {name: Finding(False, None, {}, ONLY_RATIOS) for name in gauges}
@@ -71,17 +70,16 @@ def endless(fitted: Identified, model: Model, name: str, unit: str) -> Finding:
     return Finding(False, None, {}, why)
 
 
-def _relative_slopes(fitted: Identified, recordings: Sequence[Recording], names: tuple[str, ...]) -> Signal:
+def _relative_slopes(fitted: Identified, names: tuple[str, ...]) -> Signal:
     """Change of the residual [measured unit] per relative change of each parameter, shape (samples, names)."""
-    estimator = Estimator(data_of(recordings, fitted.model), fitted.model)
     explanation = Explanation(names)
-    coordinates = estimator.coordinates(explanation)
+    there = replace(fitted.fitter, nominal=fitted.model).fit(Explanation(), fitted.model.values, 0)
+    coordinates = there.fitter.coordinates(explanation)
     point = coordinates.point(fitted.model.values)
-    slopes = sharp(lambda there: estimator.residual_at(explanation, coordinates, there), point, coordinates.bounds)
     relative = [
         1.0 if axis.logarithmic or x == 0.0 else abs(x) for axis, x in zip(coordinates.axes, point, strict=True)
     ]
-    return np.asarray(slopes * np.array(relative) * estimator.data.noise)
+    return np.asarray(slopes_at(there, explanation) * np.array(relative) * fitted.unit)
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,6 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.units import unit_of as unit_in
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.run import resimulated
-from pierburg_ros.estimation.turn import described_turn
 from pierburg_ros.identification.fit import Identified
 from pierburg_ros.identification.identifiability import Finding, endless, identifiability
 from pierburg_ros.identification.paper.lumps import Lump, fitted_duties, fitted_lumps
@@ -23,6 +21,8 @@ from pierburg_ros.identification.paper.static_characteristic import (
 )
 from pierburg_ros.identification.paper.step_response import StepResponse, step_response
 from pierburg_ros.identification.reach import fitted
+from pierburg_ros.identification.turn import described_turn
+from pierburg_ros.inference.replay import resimulated
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -111,12 +111,12 @@ def identify(
 ) -> Identification:
     """Identify the actuator of `model` from `recordings`; `free` and `fixed` change what is fitted.
 
-    `jobs` is the number of simulations at a time, by default one for each core.
+    `jobs` is the number of fits at a time, by default one for each core.
     """
     for recording in recordings:
         refuse_unmoved(recording, model.actuator)
     names = free_names(model, free, fixed)
-    found, runaway = fitted(model, recordings, names, jobs=jobs)
+    found, runaway = fitted(model, recordings, names, jobs)
     findings = identifiability(found, recordings)
     findings |= {name: endless(found, model, name, unit_of(model, name)) for name in runaway}
     static = static_characteristic(recordings, model.actuator) if papers(model.actuator) else None
@@ -181,7 +181,7 @@ def validation_rmse(
         unseen = recordings[0]
         end = unseen.time[0] + TRAINED_SHARE * unseen.duration
         seen, first = [unseen.select(0.0, end)], int(np.searchsorted(unseen.time, end, side="right"))
-    found, _ = fitted(start, seen, names, starts=1, jobs=jobs)
+    found, _ = fitted(start, seen, names, jobs)
     kept, simulated = resimulated(found.model, unseen)
     residual = (kept.measured - simulated)[first:]
     return float(np.sqrt(np.mean(residual**2)))

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.inference.evidence import repetition
 
 RANK = 1e-5
 """Singular values below this share of the largest are rounding errors, not information. Derived: central differences of
@@ -32,6 +33,14 @@ class Covariance:
     blocks: int
 
 
+@dataclass(frozen=True)
+class Spread:
+    """Covariance `matrix` of coordinates, shape (names, names), and the factor from standard deviation to 95 %."""
+
+    matrix: Signal
+    factor: float
+
+
 def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance:
     """Covariance of a least-squares fit from its Jacobian, shape (samples, names), and its residuals."""
     residual = np.concatenate(residuals)
@@ -42,11 +51,32 @@ def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance
     if length <= 1:
         factor = float(ndtri(0.975))
         return Covariance(variance * inverse, undetermined, factor, variance**0.5, True, residual.size)
-    scores = _block_scores(jacobian, residuals, 4 * length)
+    scores = block_scores(jacobian, residuals, 4 * length)
     blocks = len(scores)
     middle = scores.T @ scores * blocks / max(blocks - 1, 1)
     factor = float(stdtrit(max(blocks - jacobian.shape[1], 1), 0.975))
     return Covariance(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
+
+
+def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal) -> Spread:
+    """Covariance from slopes, shape (samples, names), residuals, one array a run, and deviations `before`, (names,)."""
+    residual = np.concatenate(residuals)
+    freedom = max(residual.size - before.size, 1)
+    variance = max(float(residual @ residual) / freedom, 1e-300) * repetition(residual)
+    left, lengths, directions = np.linalg.svd(slopes * before, full_matrices=False)
+    lengths = np.where(lengths > RANK * lengths[0], lengths, 0.0)
+    scaled = (left * lengths) @ directions
+    inverse = (directions.T / (lengths**2 / variance + 1.0)) @ directions
+    inflation, factor = np.ones(before.size), float(stdtrit(freedom, 0.975))
+    length = max(correlation_length(part) for part in residuals)
+    if length > 1:
+        scores = block_scores(scaled, residuals, 4 * length)
+        blocks = len(scores)
+        middle = scores.T @ scores * blocks / max(blocks - 1, 1) / variance**2 + np.eye(before.size)
+        sandwich = np.diagonal(inverse @ middle @ inverse)
+        inflation = np.sqrt(np.maximum(sandwich / np.diagonal(inverse), 1.0))
+        factor = float(stdtrit(max(blocks - before.size, 1), 0.975))
+    return Spread(inverse * np.outer(inflation * before, inflation * before), factor)
 
 
 def _inverse(jacobian: Signal) -> tuple[Signal, Flags]:
@@ -73,7 +103,7 @@ def correlation_length(residual: Signal) -> int:
     return int(max(below[0], 2)) if below.size else power.size
 
 
-def _block_scores(jacobian: Signal, residuals: tuple[Signal, ...], length: int) -> Signal:
+def block_scores(jacobian: Signal, residuals: tuple[Signal, ...], length: int) -> Signal:
     """Sums of jacobian times residual over blocks of at least `length` samples, shape (blocks, names)."""
     scores, first = [], 0
     for part in residuals:

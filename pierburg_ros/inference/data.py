@@ -140,12 +140,28 @@ def data_of(recordings: Sequence[Recording], nominal: Model) -> Data:
         block = np.floor((before + recording.time) / length).astype(np.int64)
         runs.append(run_of(recording, nominal, number, block))
         before += recording.duration
+    return _of_runs(recordings, tuple(runs), nominal)
+
+
+def all_fitted(recordings: Sequence[Recording], nominal: Model) -> Data:
+    """The recordings, of any length, with every sample fitted; InputError where they do not fit the actuator."""
+    if not recordings:
+        raise InputError("There is no recording to fit; expected one or more. Name a file.")
+    none = (np.zeros(recording.time.size, dtype=np.int64) for recording in recordings)
+    runs = (
+        run_of(each, nominal, number, block) for number, (each, block) in enumerate(zip(recordings, none, strict=True))
+    )
+    return _of_runs(recordings, tuple(runs), nominal)
+
+
+def _of_runs(recordings: Sequence[Recording], runs: tuple[Run, ...], nominal: Model) -> Data:
+    """The runs of recordings, and what is known of their noise."""
     noise = float(np.median([noise_of(run.time, run.measured) for run in runs]))
     measured = [run.measured for run in runs]
     finest, _ = DECLARED[STEP].expected(nominal.scales)
     step = coarse_step(measured, noise, finest)
     warnings = tuple(f"{each.name}: {each.warning}" for each in recordings if each.warning)
-    return Data(actuator, tuple(runs), noise, step, lasting_rounding(measured, noise), warnings)
+    return Data(nominal.actuator, runs, noise, step, lasting_rounding(measured, noise), warnings)
 
 
 def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.int64]) -> Run:

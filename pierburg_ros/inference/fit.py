@@ -16,6 +16,7 @@ from threading import Lock
 
 import numpy as np
 
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
@@ -148,7 +149,7 @@ class Fitter:
         parts = []
         for run, pull in zip(self.data.runs, self.pulls, strict=True):
             self.effort.count()
-            start = _start(run, model)
+            start = beginning(run, model)
             simulated = follow(model, run.inputs, run.time, run.measured, start, pull, self.data.per_unit, after, when)
             parts.append(run.measured - simulated)
         left = np.concatenate(parts) / self.data.noise
@@ -219,7 +220,12 @@ all correct. Derived: 0.3 mV of the valve's Hall voltage, the largest change ove
 
 def ladder(data: Data) -> tuple[float, ...]:
     """The time constants of the pull [s], one after the other: multiples of the actuator's own, of samples at least."""
-    own = max(data.scales.time, SAMPLES * data.period)
+    return rungs(data.actuator, data.period)
+
+
+def rungs(actuator: Actuator, period: float) -> tuple[float, ...]:
+    """The same for an actuator and samples a `period` [s] apart."""
+    own = max(actuator.scales.time, SAMPLES * period)
     return tuple(rung * own for rung in LADDER)
 
 
@@ -245,7 +251,7 @@ def rms_of(fit: Fit, samples: Flags) -> float:
     return float(np.sqrt(np.mean(np.square(left)))) * fit.fitter.data.noise if left.size else math.nan
 
 
-def _start(run: Run, model: Model) -> Signal:
+def beginning(run: Run, model: Model) -> Signal:
     """Angle [rad], velocity [rad/s], acceleration [rad/s^2] and way of coming at the first sample."""
     if run.quantity != "speed":
         return np.asarray(begun(model, run.shown[np.newaxis], run.quantity)[0])

@@ -137,8 +137,8 @@ class Comparison(Result):
 def compare(recording: Readable, model: ModelLike) -> Comparison:
     """`recording` beside what `model` would have measured under the same input.
 
-    A recording or its path, a model or the path of its file. A recording that begins in motion is taken up where
-    the shaft is first at rest. InputError where it cannot be read or the model cannot be simulated.
+    A recording or its path, a model or the path of its file. The simulation begins where the first samples show
+    the shaft, at their speed. InputError where it cannot be read or the model cannot be simulated.
 
         comparison = pr.compare("bench.mcap", pr.Model.nominal("pierburg"))
         print(comparison.rmse, comparison.noise)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pierburg_ros.comparison.compare import Comparison
-from pierburg_ros.estimation.run import parts_of
 from pierburg_ros.identification.identify import Identification as Found
 from pierburg_ros.identification.identify import identify as identified
+from pierburg_ros.inference.replay import with_known_input
 from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import Readable, recordings_of
 from pierburg_ros.library.result import Result
@@ -119,13 +119,11 @@ def identify(
 
     Recordings of one actuator or their paths; the fit starts from `model`, or from `actuator` as described (by
     default the Pierburg valve). `free` and `fixed` name parameters that are fitted too, or held. `jobs` is the
-    number of simulations at a time, by default one for each core. InputError where a recording shows no motion.
+    number of fits at a time, by default one for each core. InputError where a recording shows no motion.
 
         identification = pr.identify(["bench.mcap"], fixed=["torque_constant"])
         identification.save("results/identified")
     """
     start = chosen_model(model, actuator if actuator or model else "pierburg")
-    measured = [
-        part for recording in recordings_of(recordings, start.actuator) for part in parts_of(recording, start)[0]
-    ]
+    measured = [with_known_input(each, start.actuator) for each in recordings_of(recordings, start.actuator)]
     return Identification(identified(start, measured, free, fixed, jobs), tuple(measured))

@@ -75,6 +75,6 @@ def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> l
 
 
 def taken_up(measured: Recording) -> str:
-    """What to add about a recording that begins in motion and is taken up later; nothing for others."""
+    """What to add about a recording whose input is not known at first, and that is taken up later; else nothing."""
     begin = measured.time[0]
-    return f"; begins in motion, simulated from its first standstill at {begin:.2f} s" if begin > 0.0 else ""
+    return f"; simulated from {begin:.2f} s on, where its input is known" if begin > 0.0 else ""

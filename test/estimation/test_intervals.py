@@ -15,7 +15,7 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.likelihood import SURE
-from pierburg_ros.estimation.slopes import FINE
+from pierburg_ros.inference.slopes import FINE
 from pierburg_ros.inference.explanation import Explanation
 
 X, Y = "spring_preload", "coulomb_friction"

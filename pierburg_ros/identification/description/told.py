@@ -27,7 +27,7 @@ RESOLUTION = 1e-3
 def told(model: Model, seed: int = 0) -> dict[str, Finding]:
     """The finding for each number of `model` from a standard excitation; InputError where that cannot be simulated."""
     recording = bench(model, seed)
-    fitted = fit(model, [recording], free_names(model), starts=1, refine=False, tolerance=1e-3, jobs=1)
+    fitted = fit(model, [recording], free_names(model), jobs=1)
     return identifiability(fitted, [recording])
 
 

@@ -7,20 +7,22 @@ this difference. Real fits then judge the best few sequences.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.data import data_of
-from pierburg_ros.estimation.estimator import Estimator
-from pierburg_ros.estimation.refinement import COARSEST
 from pierburg_ros.identification.experiment.excitation import DUTY_RECIPES, duty_sequence
 from pierburg_ros.identification.experiment.explanations import refitted_names
 from pierburg_ros.identification.experiment.synthetic import synthetic_recording
-from pierburg_ros.identification.fit import fit
+from pierburg_ros.identification.fit import climbed, fitter_of
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fitter, ladder
+from pierburg_ros.inference.least_squares import jacobian
 from pierburg_ros.plant import Model
 
 SEGMENTS = 4
@@ -33,6 +35,9 @@ FINALISTS = 2
 COARSER = 5
 """Number of sample periods in one of the linear estimate's, which has many sequences to try. Work: simulations and
 memory shrink by it; the noise is scaled for it."""
+WIDE = 10.0
+"""Differences of the linear estimate's slopes, in usual ones. Chosen: they look across jumps of single samples, as when
+a shaft breaks loose; not varied."""
 DETECTABLE = 6.0
 """Separation [noise deviations] from which a single recording settles the question beyond doubt. Derived: noise alone
 separates as far with a probability of 2e-9."""
@@ -121,30 +126,38 @@ def _ways(first: Model, second: Model) -> list[tuple[Model, Model]]:
 
 def linear_separation(first: Model, second: Model, time: Signal, duty: Signal, noise: float) -> float:
     """Estimated separation [noise deviations]: the difference that the second's parameters cannot absorb linearly."""
-    target = synthetic_recording(first, time, duty, noise=0.0)
-    estimator = Estimator(data_of([target], second), second)
-    origin = estimator.at(Explanation(refitted_names(second)))
-    wide = COARSEST * estimator.coordinates(origin.explanation).steps
-    difference, slopes = origin.solution.residual, estimator.slopes(origin, wide)
+    fitter, explanation = _free(first, second, time, duty, noise), Explanation(refitted_names(second))
+    coordinates = fitter.coordinates(explanation)
+
+    def residual(point: Signal) -> Signal:
+        return fitter.residual(second.with_values(in_order(coordinates.values(point), second)))
+
+    point = coordinates.point(second.values)
+    difference = residual(point)
+    slopes = jacobian(residual, point, difference, *coordinates.bounds, WIDE * coordinates.steps)
     lengths = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     absorbed = np.linalg.lstsq(slopes / lengths, difference, rcond=1e-6)[0]
-    return float(np.linalg.norm(difference - slopes / lengths @ absorbed)) * estimator.data.noise / noise
+    return float(np.linalg.norm(difference - slopes / lengths @ absorbed))
+
+
+def _free(first: Model, second: Model, time: Signal, duty: Signal, noise: float) -> Fitter:
+    """What fits the second model to the response of the first, by simulations that run free, errors in `noise`."""
+    fitter = fitter_of([synthetic_recording(first, time, duty, noise=0.0)], second)
+    return replace(fitter, data=replace(fitter.data, noise=noise, step=0.0, rounding=0.0), constant=math.inf)
 
 
 def judge(
     first: Model, second: Model, time: Signal, duty: Signal, segments: tuple[Segment, ...], noise: float
 ) -> Design:
     """The design that `duty` makes, with each explanation really fitted to the other's response."""
-    left = min(
-        fit(
-            other,
-            [synthetic_recording(truth, time, duty, noise=0.0)],
-            refitted_names(other),
-            starts=1,
-            refine=False,
-        ).rmse
-        for truth, other in _ways(first, second)
-    )
+    left = min(_left(truth, other, time, duty, noise) for truth, other in _ways(first, second))
     answers = [synthetic_recording(model, time, duty, noise=0.0).measured for model in (first, second)]
     separation = left * float(np.sqrt(time.size)) / noise
     return Design(time, duty, segments, left, separation, answers[0], answers[1])
+
+
+def _left(truth: Model, other: Model, time: Signal, duty: Signal, noise: float) -> float:
+    """What the other explanation leaves of the response of the `truth` [measured unit, root mean square]."""
+    free, explanation = _free(truth, other, time, duty, noise), Explanation(refitted_names(other))
+    near = climbed(free.pulled(ladder(free.data)[0]), explanation, other.values)
+    return rms(free.fit(explanation, near.values).residual) * noise

@@ -80,11 +80,11 @@ def _derived(
 
 def _relative_slopes(fitted: Identified, quantities: Callable[[Model], dict[str, float]]) -> Signal:
     """Derivative of the logarithm of each quantity by the coordinates, shape (quantities, names)."""
-    step, estimator = 1e-6, fitted.estimator
-    coordinates = estimator.coordinates(fitted.fit.explanation)
+    step, fitter, explanation = 1e-6, fitted.fitter, fitted.fit.explanation
+    coordinates = fitter.coordinates(explanation)
 
     def logarithms(point: Signal) -> Signal:
-        model = estimator.model({**estimator.nominal.values, **coordinates.values(point)})
+        model, *_ = fitter.models(explanation, {**fitter.nominal.values, **coordinates.values(point)})
         with np.errstate(divide="ignore", invalid="ignore"):  # nothing is known of a lump that is 0
             return np.log(list(quantities(model).values()))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.estimation.slopes import JUMPS, central, sharp
+from pierburg_ros.inference.slopes import JUMPS, central, sharp
 
 TIME = np.linspace(0.0, 3.0, 200)
 NOISE = 0.05 * np.random.default_rng(4).standard_normal(TIME.size)

@@ -1,0 +1,140 @@
+"""How well a fit knows its quantities: 95 % intervals, and which of them only show together.
+
+The covariance follows from the slopes of the residual at the fit. A residual that is correlated in time counts in
+effective samples, or by its sums over blocks (the sandwich) where these vary more. What a fit holds is known from its
+description only: its slopes count too, so that no quantity is known better than what it is only seen in ratio to.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.inference.coordinates import ABOVE, Coordinates
+from pierburg_ros.inference.covariance import RANK, Spread, spread
+from pierburg_ros.inference.evidence import beyond
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.slopes import sharp
+
+HALF_KNOWN = 0.5
+"""A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: nobody
+should act on a value known to no better than a half; a convention of the report."""
+DEVIATIONS = 4.0
+"""Standard deviations in the range of a parameter. Given: its ends count as two either way."""
+TOLD = 0.5
+"""Share of the standard deviation before a recording below which the one after it must be for the recording to tell a
+quantity. Derived: three quarters of what is known then come from the recording."""
+FREE = 10.0
+"""Standard deviation before a recording of what is free, in ranges. Derived: what is held, a quarter of a range, then
+counts 1600 times as much, and all that is determined at all a million times."""
+TOGETHER = 0.99
+"""Correlation from which quantities only show together. Derived: each would be known seven times, 1 / sqrt(1 -
+0.99^2), better if the others were known."""
+ON_BOUND = 1e-6
+"""Distance from a bound, as a share of the range, within which a fit ended on it. Derived: far above rounding, and far
+below any step of a fit."""
+NUDGE = 1e-6
+"""Step in coordinates for the slope of a value. Derived: conversions are smooth; the error is 1e-12."""
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What a fit knows of one quantity, in the quantity's unit.
+
+    `ci95` is None where the recordings do not determine it, and where the fit ended on a bound of the search
+    (`at_bound`). `identifiable`: the interval is narrow enough to act on. `tied_with` names quantities, free or held,
+    with which it only shows together: each by itself, or else the fewest that do so in common.
+    """
+
+    value: float
+    ci95: tuple[float, float] | None
+    identifiable: bool
+    at_bound: bool
+    tied_with: tuple[str, ...]
+
+
+def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
+    """What `fit` knows of each free quantity, by dotted name, beside parameters that it `held`.
+
+    A held parameter may be anywhere in its range, whose ends count as two standard deviations.
+    """
+    own = fit.explanation
+    if not own.names:
+        return {}
+    beside = tuple(name for name in held if name not in own.names)
+    whole = replace(own, drifted=(*beside, *own.drifted))
+    coordinates = fit.fitter.coordinates(whole)
+    point = coordinates.point(fit.values)
+    residuals = by_run(fit)
+    lower, upper = coordinates.bounds
+    ranges = (upper - lower) / DEVIATIONS
+    before = np.where([name in beside for name in whole.names], ranges, FREE * (upper - lower))
+    known = spread(slopes_at(fit, whole), residuals, before)
+    told = np.sqrt(np.diagonal(known.matrix)) < TOLD * ranges
+    on_bound = np.minimum(point - lower, upper - point) <= ON_BOUND * (upper - lower)
+    found = {}
+    for name in own.names:
+        place, value = whole.names.index(name), coordinates.values(point)[name]
+        at_bound, ends = bool(on_bound[place]), _ends(coordinates, point, name, known)
+        ci95 = None if at_bound or not told[place] else ends
+        near = ci95 is not None and max(value - ci95[0], ci95[1] - value) <= HALF_KNOWN * abs(value)
+        partners = tuple(whole.names[other] for other in together(known.matrix, place))
+        found[name] = Interval(value, ci95, near, at_bound, partners)
+    return found
+
+
+def slopes_at(fit: Fit, explanation: Explanation) -> Signal:
+    """Derivative of the fitted residual at `fit` by coordinates of an `explanation`, shape (samples, quantities)."""
+    fitter, coordinates = fit.fitter, fit.fitter.coordinates(explanation)
+
+    def fitted(point: Signal) -> Signal:
+        left = fitter.residual(*fitter.models(explanation, {**fit.values, **coordinates.values(point)}))
+        return beyond(left[fitter.data.train], fitter.data.half_step)
+
+    return sharp(fitted, coordinates.point(fit.values), coordinates.bounds)
+
+
+def together(matrix: Signal, place: int) -> list[int]:
+    """The quantities of a covariance `matrix` each of which determines the one at a `place`, or the fewest that do."""
+    deviation = np.sqrt(np.maximum(np.diagonal(matrix), 1e-300))
+    correlation = matrix / np.outer(deviation, deviation)
+
+    def shared(others: list[int]) -> float:
+        inner, own = correlation[np.ix_(others, others)], correlation[others, place]
+        return float(own @ np.linalg.pinv(inner, rcond=RANK**2, hermitian=True) @ own)
+
+    chosen: list[int] = []
+    rest = [other for other in range(deviation.size) if other != place]
+    alone = [other for other in rest if abs(correlation[other, place]) > TOGETHER]
+    while rest and not alone:
+        best = max(rest, key=lambda other: shared([*chosen, other]))
+        chosen, rest = [*chosen, best], [other for other in rest if other != best]
+        if shared(chosen) > TOGETHER**2:
+            return chosen
+    return alone
+
+
+def _ends(coordinates: Coordinates, point: Signal, name: str, known: Spread) -> tuple[float, float]:
+    """The least and the largest value of a quantity within its 95 %, the others where they are likeliest then."""
+    slope = np.zeros(point.size)
+    for each in (name, ABOVE.get(name)):
+        if each in coordinates.names:
+            place = coordinates.names.index(each)
+            axis, at = coordinates.axes[place], float(point[place])
+            slope[place] = (axis.value(at + NUDGE) - axis.value(at - NUDGE)) / (2.0 * NUDGE)
+    move = known.matrix @ slope / max(math.sqrt(float(slope @ known.matrix @ slope)), 1e-300)
+    low, high = (coordinates.values(point + side * known.factor * move)[name] for side in (-1.0, 1.0))
+    return min(low, high), max(low, high)
+
+
+def by_run(fit: Fit) -> tuple[Signal, ...]:
+    """The fitted residual, one array for each run with samples that were fitted."""
+    data = fit.fitter.data
+    parts = np.split(data.train, np.cumsum([run.time.size for run in data.runs])[:-1])
+    ends = np.cumsum([np.count_nonzero(part) for part in parts])[:-1]
+    return tuple(part for part in np.split(fit.fitted, ends) if part.size)
