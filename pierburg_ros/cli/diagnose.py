@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.cli.console.progress import Step, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
@@ -23,7 +24,6 @@ from pierburg_ros.cli.options.recordings import (
     topics_of,
 )
 from pierburg_ros.cli.options.viewers import RerunOption
-from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
 
@@ -56,7 +56,7 @@ def diagnose(
     time: TimeOption = None,
     rerun: RerunOption = None,
     jobs: JobsOption = None,
-    budget: BudgetOption = USUAL_BUDGET,
+    budget: BudgetOption = "1",
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> str:
@@ -86,7 +86,9 @@ def diagnose(
     # it takes a second to load what draws the results: beside the search, whose compiled code leaves room for it
     Thread(target=lambda: [import_module(each) for each in DRAWING]).start()
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
+        diagnosis = diagnosed_with_progress(
+            measured, nominal, jobs, Budget.of(None if thorough else budget), simulated, force
+        )
         diagnosis.write_into(folder)
     if rerun:
         diagnosis.write_rerun(rerun)
@@ -102,28 +104,20 @@ def diagnosed_with_progress(
     recordings: Sequence[Recording],
     nominal: Model,
     jobs: int | None = None,
-    budget: float | None = USUAL_BUDGET,
+    budget: Budget = USUAL_BUDGET,
     simulation: Sequence[Recording] = (),
     force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
-    from pierburg_ros.diagnosis.search.tried import Tried
     from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
 
     with progress() as show:
-
-        def tell(what: str) -> None:
-            if isinstance(what, Tried):
-                show(Step(what.stage, what.done, what.about, what.best, what.left, what))
-            else:
-                show(Step(what))
-
         show(Step("recordings"))
         return diagnosis_of(
             recordings,
             model=nominal,
             simulation=simulation or None,
-            progress=tell,
+            progress=lambda what: show(Step(what)),
             jobs=jobs,
             budget=budget,
             force=force,

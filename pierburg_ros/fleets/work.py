@@ -94,7 +94,7 @@ def _said(found: Diagnosis, recording: Recording) -> dict[str, Any]:
         "temperature": _mean(recording.temperature),
         "supply_voltage": _mean(recording.supply_voltage),
         "verdict": said.verdict,
-        "stopped": said.stopped,
+        "stopped": said.effort.stopped_by is not None,
         "summary": said.summary,
         "faults": [f"{fault.signal}: {fault.what}" for fault in said.input_faults],
         "noise_floor": said.fit.noise_floor,

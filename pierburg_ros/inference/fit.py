@@ -9,15 +9,20 @@ parameter identification in dynamical systems, 2012).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Lock
+from typing import Literal
 
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.budget import USUAL_BUDGET, Budget
+from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data, Run
@@ -43,21 +48,43 @@ what the valve remembers, 0.1 to 1 s; not varied."""
 
 @dataclass
 class Effort:
-    """How many simulations were made, and how many may be made: a count of work that no machine's speed changes."""
+    """How many simulations were made of those that a budget allows: a count of work that no machine's speed changes."""
 
-    most: float = math.inf
+    budget: Budget = USUAL_BUDGET
     simulations: int = 0
+    stopped_by: Literal["budget", "interrupt", "clock"] | None = None
+    _interruptible: bool = field(default=False, repr=False)
+    _begun: float = field(default_factory=time.monotonic, repr=False)
     _lock: Lock = field(default_factory=Lock, repr=False)
 
     def count(self) -> None:
-        """One more."""
+        """One more; OutOfTime where the time is over during `interruptible` work."""
         with self._lock:
             self.simulations += 1
+            if self._interruptible and time.monotonic() - self._begun >= self.budget.seconds:
+                raise OutOfTime
 
     @property
     def over(self) -> bool:
-        """Whether all that may be made were made."""
-        return self.simulations >= self.most
+        """Whether nothing larger may be tried: the count is looked at between the steps of a search, so that it ends
+        at the same step with any number of jobs.
+        """
+        if self.stopped_by is None and self.simulations >= self.budget.simulations:
+            self.stopped_by = "budget"
+        return self.stopped_by is not None
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Work that Ctrl-C or the end of the time may end, with what was found before."""
+        self._interruptible = True
+        try:
+            yield
+        except OutOfTime:
+            self.stopped_by = "clock"
+        except KeyboardInterrupt:
+            self.stopped_by = "interrupt"
+        finally:
+            self._interruptible = False
 
 
 @dataclass(frozen=True)

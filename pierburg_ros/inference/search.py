@@ -33,6 +33,9 @@ BEAM = 3
 WORTH = 0.9
 """Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
 for another effect to be added. Chosen: a tenth is worth the work; not varied."""
+NEAR = 4.0
+"""Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen: what
+leaves twice the error of the best hardly holds the effect that explains most; not varied."""
 DEEPEST = 3
 """Most effects in an explanation. Given: supports of up to three effects."""
 
@@ -58,27 +61,34 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
     candidates, leading = forms(fitter.data, fitter.nominal, search.span), [base]
     found, ended = {key(base)}, followed([base], search.pool)
-    for depth in range(1, DEEPEST + 1):
-        if any(map(adequate, ended)) or fitter.effort.over:
-            break
-        grown: list[Fit] = []
-        for fit in leading:
-            search.tell(f"what could be added to {label(fit)}")
-            promised = promises(fit, search.balance, candidates, search.pool)
-            grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
-            grown += changed(fit, search) if depth == 1 else []
-        new = [fit for fit in best_of_support(grown) if key(fit) not in found]
-        if not new:
-            break
-        found.update(map(key, new))
-        search.tell(f"{label(new[0])}, to the end")
-        led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
-        before, leading = leading[0], sorted(led, key=lambda fit: fit.chi2)
-        ended = best_of_support([*ended, *followed(led, search.pool)])
-        ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
-        if excess(leading[0]) > WORTH * excess(before):
-            break
+    with fitter.effort.interruptible():
+        for depth in range(1, DEEPEST + 1):
+            if any(map(adequate, ended)) or fitter.effort.over:
+                break
+            grown: list[Fit] = []
+            for fit in leading:
+                search.tell(f"what could be added to {label(fit)}")
+                promised = promises(fit, search.balance, candidates, search.pool)
+                grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
+                grown += changed(fit, search) if depth == 1 else []
+            new = [fit for fit in best_of_support(grown) if key(fit) not in found]
+            if not new:
+                break
+            found.update(map(key, new))
+            search.tell(f"{label(new[0])}, to the end")
+            led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
+            before, leading = leading[0], nearest(led)
+            ended = best_of_support([*ended, *followed(led, search.pool)])
+            ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
+            if excess(leading[0]) > WORTH * excess(before):
+                break
     return ended
+
+
+def nearest(fits: Sequence[Fit]) -> list[Fit]:
+    """The fits that leave at most `NEAR` times the error of the best, best first."""
+    ordered = sorted(fits, key=lambda fit: fit.chi2)
+    return [fit for fit in ordered if excess(fit) <= NEAR * excess(ordered[0])]
 
 
 def without_one(fit: Fit, pool: Executor) -> list[Fit]:

@@ -20,7 +20,7 @@ def refusal(recordings: Sequence[Recording], nominal: Model, faults: Sequence[Fa
     unknown = Errors(nominal_rmse=None, recalibrated_rmse=None, final_rmse=None)
     first = recordings[0]
     document = Diagnosis(
-        schema=2,
+        schema=3,
         recordings=[recording.name for recording in recordings],
         quantity=nominal.actuator.quantity,
         unit=nominal.actuator.unit,

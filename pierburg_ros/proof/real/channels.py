@@ -10,7 +10,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.put_in import Channels, Series
-from pierburg_ros.estimation.likelihood import grid
+from pierburg_ros.inference.evidence import grid
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.recording import Channel, Recording, write_recording

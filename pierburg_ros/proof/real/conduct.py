@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pierburg_ros.deadline import SLOWEST
 from pierburg_ros.effects.put_in import CannotPutIn
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model, read_model
@@ -35,7 +34,7 @@ NOTHING: dict[str, Any] = {"verdict": "none", "effects": []}
 
 @dataclass(frozen=True)
 class Bench:
-    """Where the files of a run lie, and how it diagnoses: the `command`, with so many seconds of an idle machine."""
+    """Where the files of a run lie, and how it diagnoses: the `command`, with so many usual efforts."""
 
     output: Path
     version: str
@@ -44,9 +43,8 @@ class Bench:
 
     def diagnose(self, folder: Path, recordings: Mapping[str, str]) -> float:
         """Diagnose `recordings`, the file in `folder` of each, against the model there; gives the time it took [s]."""
-        budget = self.budget * len(recordings)
-        command = (*self.command, "--model", MODEL, "--budget", f"{budget:g}")
-        return diagnose(folder, command, {**recordings, MODEL: MODEL}, SLOWEST * budget + LONGEST)
+        command = (*self.command, "--model", MODEL, "--budget", f"{self.budget:g}")
+        return diagnose(folder, command, {**recordings, MODEL: MODEL}, LONGEST)
 
     def source(self, name: str) -> Path:
         """The recording called `name`, as it was taken up."""

@@ -102,5 +102,5 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
         within=within,
         beside=tuple(sorted(effects - {kind} - (set() if kind == UNTOUCHED else before))),
         refused=tuple(f"{fault['signal']}: {fault['what']}" for fault in diagnosis.get("input_faults", [])),
-        stopped=bool(diagnosis.get("stopped", False)),
+        stopped=diagnosis.get("effort", {}).get("stopped_by") is not None,
     )

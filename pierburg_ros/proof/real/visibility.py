@@ -6,15 +6,17 @@ beside the effect. No search is asked: only the recording as it is, its model, a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
-from pierburg_ros.diagnosis.search.candidates import drifting
-from pierburg_ros.diagnosis.search.scored import scored
-from pierburg_ros.effects import EFFECT
-from pierburg_ros.estimation.data import Data, all_training, data_of, rms
-from pierburg_ros.estimation.estimator import Estimator
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.inference.data import data_of
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fitter, ladder
 from pierburg_ros.inference.least_squares import BRIEF
+from pierburg_ros.inference.search import free_parameters
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.visibility import VISIBLE
 from pierburg_ros.recording import Recording
@@ -24,8 +26,7 @@ from pierburg_ros.recording import Recording
 class Visibility:
     """How far a change stands out of what remains.
 
-    `distance` is squared, from the nearest single drift, in standard deviations of what remains: the innovations of the
-    likeliest discrepancy beside the noise. `moves` is what the change leaves in the signal once all that may drift is
+    `distance` is squared, from the nearest single drift, in standard deviations of what remains, in effective samples. `moves` is what the change leaves in the signal once all that may drift is
     refitted, `remains` what the model without it misses then; root mean squares in the measured unit.
     """
 
@@ -42,21 +43,25 @@ class Visibility:
 def visibility(recording: Recording, model: Model, changed: Model, name: str) -> Visibility:
     """Judge what changes a `recording` of a machine like `model` as it changes that to `changed`, by the number `name`.
 
-    Behind a filter of the input, whose time each recording tells anew, what comes late is not told from a shorter one.
+    All is linear around the model, with the longest pull of a fit.
     InputError where the recording cannot be used.
     """
-    data = all_training(data_of([recording], model))
-    target = replace(data, runs=tuple(replace(run, measured=run.simulated(changed)) for run in data.runs))
-    drifts = tuple(each for each in drifting(model) if each != name)
-    remains = scored(data, Estimator(data, model).at(Explanation())).discrepancy
-    beside = Estimator(target, model, discrepancy=remains)
-    nearest = min(beside.fit(Explanation((drift,)), iterations=BRIEF).chi2 for drift in drifts)
-    effect = EFFECT.get(name.partition(".")[0])
-    if effect and effect.late and data.input_filtered:
-        nearest = 0.0
-    return Visibility(nearest, _left(target, model, drifts), _left(data, model, drifts))
+    data = data_of([recording], model)
+    fitter = Fitter(data, model, ladder(data)[-1])
+    drifts = tuple(each for each in free_parameters(model) if each != name)
+    left = fitter.fit(Explanation(drifts), model.values, BRIEF)
+    described = fitter.fit(Explanation(), model.values, 0)
+    change = (fitter.residual(changed) - fitter.residual(model))[data.train]
+    slopes = {drift: fitter.slopes(described, Explanation((drift,))) for drift in drifts}
+    counted = left.repetition * max(left.ratio**2, 1.0)
+    nearest = min((_beside(change, slope) for slope in slopes.values()), default=float(change @ change)) / counted
+    together = np.concatenate([np.zeros((change.size, 0)), *slopes.values()], axis=1)
+    moves = math.sqrt(_beside(change, together) / change.size) * data.noise
+    return Visibility(nearest, moves, left.ratio * data.noise)
 
 
-def _left(data: Data, model: Model, drifts: tuple[str, ...]) -> float:
-    """What all that may drift leaves of measured signals, root mean square in the measured unit."""
-    return rms(Estimator(data, model).fit(Explanation(drifts), iterations=BRIEF).solution.residual) * data.noise
+def _beside(change: Signal, slopes: Signal) -> float:
+    """Squared size of a change that no combination of some slopes, shape (samples, drifts), makes."""
+    basis = np.linalg.qr(slopes)[0]
+    rest = change - basis @ (basis.T @ change)
+    return float(rest @ rest)
