@@ -15,6 +15,7 @@ from pierburg_ros.closed_loop.plants import plant_set
 from pierburg_ros.closed_loop.report import BEGIN, END, plants_table, report
 
 DOCUMENT = Path(__file__).parents[2] / "docs/control.md"
+MEASUREMENTS = DOCUMENT.parent / "developers/measurements.md"
 COMPARISON = DOCUMENT.parent / "developers/data/controllers.txt"
 CELL = re.compile(r"(?<=\| )[-+.\de]+( of (?P<goals>\d+)| \([.\d]+\)| \(missed\))?(?= \|)")
 
@@ -62,7 +63,7 @@ def test_the_table_of_the_page_is_that_of_the_comparison():
 def test_the_corrected_loops_are_those_that_the_script_judges():
     """Its searches take minutes: plants, columns, and one row that needs no search, are held against the page."""
     script = script_of("corrected_loops")
-    text = DOCUMENT.read_text(encoding="utf-8")
+    text = MEASUREMENTS.read_text(encoding="utf-8")
     table = text[text.index(script.BEGIN) : text.index(script.END)]
     header, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.split("\n|")[1:]]
     assert tuple(header) == script.HEADER
