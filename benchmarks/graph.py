@@ -1,6 +1,6 @@
 """The live graph: plant, controller and recorder at 500 Hz, idle and on a machine with all cores busy.
 
-python benchmarks/graph.py --duration 600 writes its section of docs/benchmarks.md; --no-write only prints.
+python benchmarks/graph.py --duration 600 writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A long run at 500 Hz: messages lost by sequence, memory at start, middle and end, ticks skipped.
 
-python benchmarks/hour.py --duration 3600 --case idle writes its section of docs/reliability.md, one for each case;
+python benchmarks/hour.py --duration 3600 --case idle writes its section of the measurements, one for each case;
 --no-write only prints.
 """
 
@@ -74,7 +74,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_section(f"hour {options.case}", text, "reliability.md")
+        write_section(f"hour {options.case}", text)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What the recorder loses when a process gets no processor: each one stopped in turn, and all beside busy ones.
 
-python benchmarks/stalls.py writes its section of docs/reliability.md; --no-write only prints.
+python benchmarks/stalls.py writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_section("recording", text, "reliability.md")
+        write_section("recording", text)
 
 
 if __name__ == "__main__":

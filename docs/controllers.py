@@ -1,4 +1,4 @@
-"""The table of controllers in docs/control.md, from what `pierburg tune --compare` wrote: `python docs/controllers.py`."""
+"""The table of controllers in docs/control.md, from `pierburg tune --compare`: `python docs/controllers.py`."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """What `pierburg tune --model` gives for plants with an effect: `python docs/corrected_loops.py`.
 
-Writes its part of docs/developers/measurements.md. A few minutes on an idle machine; the numbers are the same each time.
+Writes its part of docs/developers/measurements.md. A few minutes on an idle machine; the numbers are the same each
+time.
 """
 
 from __future__ import annotations

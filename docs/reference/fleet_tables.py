@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pierburg_ros.fleets.table import COLUMNS
-
 from reference.markdown import code, table
 
 

@@ -17,7 +17,8 @@ NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 
 
 def test_the_page_of_effects_is_written_from_the_declarations():
-    assert (DOCS / "reference" / "effects.md").read_text(encoding="utf-8") == page(), "run python -m pierburg_ros.effects.page"
+    kept = (DOCS / "reference" / "effects.md").read_text(encoding="utf-8")
+    assert kept == page(), "run python -m pierburg_ros.effects.page"
 
 
 @pytest.mark.parametrize("name", ["commands.md", "diagnosis_json.md", "fleet_tables.md", "parameters.md", "topics.md"])
