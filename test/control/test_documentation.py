@@ -10,7 +10,7 @@ import pytest
 from pierburg_ros.closed_loop.course import STEPS
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import Goal
-from pierburg_ros.closed_loop.judgement import PLACE, SEEDS, Judgement
+from pierburg_ros.closed_loop.judgement import NOISE_SEEDS, PLACE, Judgement
 from pierburg_ros.closed_loop.plants import plant_set
 from pierburg_ros.closed_loop.report import BEGIN, END, plants_table, report
 
@@ -34,7 +34,7 @@ def test_the_comparison_names_plants_steps_and_columns_as_the_report_does():
             name,
             design.settings(np.mean(design.bounds, axis=1)),
             plants,
-            {plant: random.uniform(0.5, 1.0, (len(SEEDS), len(STEPS), len(PLACE))) for plant in plants},
+            {plant: random.uniform(0.5, 1.0, (len(NOISE_SEEDS), len(STEPS), len(PLACE))) for plant in plants},
         )
         for name, design in DESIGNS.items()
     ]
