@@ -51,7 +51,7 @@ class Fleet:
         return f"Look at {first.unit} first: {first.why}."
 
     def table(self, name: str = "recordings") -> pandas.DataFrame:
-        """The table `recordings`, `findings` or `ageing` as a data frame; docs/fleet.md lists the columns."""
+        """The table `recordings`, `findings` or `ageing` as a data frame; columns in docs/reference/fleet_tables.md."""
         rows = self.rows(name)
         return data_frame({column: [row[column] for row in rows] for column in (rows[0] if rows else {})})
 

@@ -25,7 +25,7 @@ from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
 from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial, Truth, added
 from pierburg_ros.proof.real.visibility import visibility
 from pierburg_ros.proof.seal import opened, seal
-from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST, RESULT, diagnose, finite, result
+from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST_DIAGNOSIS, RESULT, diagnose, finite, result
 from pierburg_ros.recording import Recording, read_recording
 
 RECORDING, MODEL, ANSWER = "recording.mcap", "model.yaml", "diagnosis/diagnosis.json"
@@ -44,7 +44,7 @@ class Bench:
     def diagnose(self, folder: Path, recordings: Mapping[str, str]) -> float:
         """Diagnose `recordings`, the file in `folder` of each, against the model there; gives the time it took [s]."""
         command = (*self.command, "--model", MODEL, "--budget", f"{self.budget:g}")
-        return diagnose(folder, command, {**recordings, MODEL: MODEL}, LONGEST)
+        return diagnose(folder, command, {**recordings, MODEL: MODEL}, LONGEST_DIAGNOSIS)
 
     def source(self, name: str) -> Path:
         """The recording called `name`, as it was taken up."""

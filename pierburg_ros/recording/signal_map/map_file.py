@@ -22,7 +22,7 @@ TIME_UNITS = ("s", "ms", "us", "ns")
 FORM = "expected {topic: /name, field: path} or {column: name}, with unit, scale, offset and sign where needed"
 BARE = re.compile(r"(?P<key>\b(?:field|column|topic):[ \t]+)(?P<name>[^\s'\"\[{,}][^'\"{},\n]{0,300})(?=[,}])")
 """A name or a path between braces and without quotes."""
-LARGEST = 1e12
+LARGEST_SCALE = 1e12
 """Largest magnitude of a scale, and with 1 over it the smallest: from pico to tera."""
 MOST_FILES = 1000
 """Parts of a table at most."""
@@ -96,11 +96,11 @@ class Entry:
         self.check_keys(KEYS)
         kind = self.kind()
         wanted = SIGNALS[self.signal].units
-        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST)
+        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST_SCALE)
         if unit.written == COUNTS and "scale" not in self.given:
             raise self.wrong("unit", COUNTS, f"a scale too, in {wanted[0]} per count")
-        if scale == 0.0 or abs(scale) < 1.0 / LARGEST:
-            raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST:g}")
+        if scale == 0.0 or abs(scale) < 1.0 / LARGEST_SCALE:
+            raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST_SCALE:g}")
         return Source(
             kind,
             self.text(kind),

@@ -1,7 +1,6 @@
-"""The page of thresholds, written from the sources: `python docs/thresholds.py > docs/thresholds.md`.
+"""Numbers that a module names in capitals: their values as written, and what their docstrings say.
 
-A threshold is a number, or several, that a module of the rooms below gives a name in capitals. Its docstring says what
-it decides, and then, after one of the words of `GROUNDS`, the reason for its value.
+A docstring says what its number decides, and then, after one of the words of `GROUNDS`, the reason for its value.
 """
 
 from __future__ import annotations
@@ -13,24 +12,12 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
-ROOMS = ("inference", "estimation", "audit", "diagnosis", "identification", "fleets")
+PACKAGE = Path(__file__).parents[2] / "pierburg_ros"
 GROUNDS = ("Derived", "Measured", "Work", "Given", "Chosen")
-HEAD = """\
-# Thresholds
-
-Written by `python docs/thresholds.py > docs/thresholds.md`; edit the docstrings of the constants, not this page.
-
-Every number with a name in `inference/`, `estimation/`, `audit/`, `diagnosis/`, `identification/` and `fleets/`, and
-the reason for its value.
-*Derived*: it follows from something else. *Measured*: from n cases. *Work*: it bounds the time spent; more time would
-find as much or more. *Given*: a convention or a printed number. *Chosen*: it was found to work, and how far it was
-tried stands with it. Unless a row says how it was varied, no other value has been measured over the blind trials.
-"""
 
 
 @dataclass(frozen=True)
-class Threshold:
+class NamedNumber:
     """A named number: its value as written, its file in the package, and its docstring in three parts."""
 
     name: str
@@ -41,13 +28,11 @@ class Threshold:
     reason: str
 
 
-def thresholds() -> Iterator[Threshold]:
-    """The thresholds of all rooms, by room and file."""
-    package = ROOT / "pierburg_ros"
-    for room in ROOMS:
-        for source in sorted((package / room).rglob("*.py")):
-            for name, value, docstring in named_numbers(source.read_text(encoding="utf-8")):
-                yield Threshold(name, value, str(source.relative_to(package)), *parts(docstring))
+def numbers_of(folder: str = "") -> Iterator[NamedNumber]:
+    """The named numbers of a folder of the package, or of all of it, by file."""
+    for source in sorted((PACKAGE / folder).rglob("*.py")):
+        for name, value, docstring in named_numbers(source.read_text(encoding="utf-8")):
+            yield NamedNumber(name, value, str(source.relative_to(PACKAGE)), *parts(docstring))
 
 
 def named_numbers(source: str) -> Iterator[tuple[str, str, str]]:
@@ -69,19 +54,9 @@ def parts(docstring: str) -> tuple[str, str, str]:
     return (found[1], found[2], found[3]) if found else (docstring, "", "")
 
 
-def page() -> str:
-    """The page, as Markdown."""
-    rows = (f"| `{t.name}` | `{t.value}` | `{t.file}` | {t.decides} | *{t.ground}*: {t.reason} |" for t in thresholds())
-    return "\n".join([HEAD, "| name | value | file | decides | reason |", "|---|---|---|---|---|", *rows, ""])
-
-
 def _is_numeric(value: ast.expr) -> bool:
     """Whether an expression holds a number and no text but names of a table's rows."""
     keys = {id(key) for node in ast.walk(value) if isinstance(node, ast.Dict) for key in node.keys}
     constants = [n for n in ast.walk(value) if isinstance(n, ast.Constant) and id(n) not in keys]
     numbers = [constant for constant in constants if type(constant.value) in (int, float)]
     return bool(numbers) and len(numbers) == len(constants)
-
-
-if __name__ == "__main__":
-    print(page(), end="")
