@@ -30,10 +30,10 @@ ALLOWED = {
 ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
-ALLOWED["estimation"] = ALLOWED["plant"] | {"plant", "recording"}
-ALLOWED["inference"] = ALLOWED["estimation"] | {"estimation"}
+ALLOWED["inference"] = ALLOWED["plant"] | {"plant", "recording"}
+ALLOWED["estimation"] = ALLOWED["inference"] | {"inference"}
 ALLOWED["pages"] = {"arrays", "actuators"}
-ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
+ALLOWED["comparison"] = ALLOWED["inference"] | {"inference", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
 ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
@@ -78,8 +78,9 @@ ROOMS = {
         "fit": set(),
         "identifiability": {"fit"},
         "paper": {"fit"},
-        "reach": {"fit"},
-        "identify": {"fit", "identifiability", "paper", "reach"},
+        "turn": set(),
+        "reach": {"fit", "turn"},
+        "identify": {"fit", "identifiability", "paper", "reach", "turn"},
         "experiment": {"fit", "identify", "paper"},
         "description": {"fit", "identifiability", "identify"},
     },

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,14 +12,14 @@ from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import in_order
-from pierburg_ros.inference.covariance import Covariance, covariance_of
+from pierburg_ros.inference.covariance import Covariance, at_least_effective
 from pierburg_ros.inference.data import Data, all_fitted
 from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
-from pierburg_ros.inference.fit import Fit, Fitter, ladder
+from pierburg_ros.inference.fit import Fit, Fitter, rungs
 from pierburg_ros.inference.intervals import by_run, slopes_at
 from pierburg_ros.inference.motion import motion_of
-from pierburg_ros.inference.replay import forgets
+from pierburg_ros.inference.replay import forgets, pull_of
 from pierburg_ros.inference.shortlist import balanced
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -79,12 +78,12 @@ class Identified:
     def residuals(self) -> tuple[Signal, ...]:
         """Measured minus simulated, one array for each run, in the measured unit.
 
-        The simulation runs free where the actuator forgets its beginning, otherwise pulled as at the end of the fit.
+        The simulation is that of a replay: it runs free where the actuator forgets its beginning.
         """
         data = self.fitter.data
-        free = self.fitter.pulled(math.inf) if forgets(data.actuator) else self.fitter
+        replayed = self.fitter.pulled(pull_of(data.actuator, data.period))
         lengths = [run.time.size for run in data.runs]
-        left = free.residual(self.model) * data.noise * self.per_unit
+        left = replayed.residual(self.model) * data.noise * self.per_unit
         return tuple(np.split(left, np.cumsum(lengths)[:-1]))
 
     @property
@@ -135,34 +134,46 @@ def fit(model: Model, recordings: Sequence[Recording], free: Sequence[str], jobs
 def fitter_of(recordings: Sequence[Recording], model: Model) -> Fitter:
     """What fits `model` to all samples of `recordings`, with the strongest pull."""
     data = all_fitted(recordings, model)
-    return Fitter(data, model, ladder(data)[0])
+    return Fitter(data, model, constants(data, model)[0])
+
+
+def constants(data: Data, model: Model) -> tuple[float, ...]:
+    """The time constants of the pull [s], one after the other, for what `model` is, however its actuator is described.
+
+    What forgets nothing does not forget where its simulation began either: it keeps to the first.
+    """
+    numbers = data.actuator.parameters
+    own = {name: replace(each, default=model.values[name]) for name, each in numbers.items()}
+    found = rungs(replace(data.actuator, parameters=own), data.period)
+    return found if forgets(data.actuator) else found[:1]
 
 
 def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) -> Fit:
     """The fit of an explanation from some `values`, pulled ever more weakly."""
-    found = fitter.fit(explanation, values)
-    for constant in ladder(fitter.data)[1:]:
+    first, *others = constants(fitter.data, fitter.nominal)
+    found = fitter.pulled(first).fit(explanation, values)
+    for constant in others:
         found = fitter.pulled(constant).fit(explanation, found.values)
     return found
 
 
 def balanced_starts(fitter: Fitter, free: Sequence[str]) -> list[dict[str, float]]:
     """The values with which torques balance along the motion of the recordings; none where these tell too little."""
-    balance = balance_of(fitter.data, fitter.nominal)
+    nominal, balance = fitter.nominal, balance_of(fitter)
     if balance.size < FEWEST * len(free):
         return []
-    nominal = fitter.nominal
     values, _ = balanced(balance, nominal, free, nominal.values, nominal.active_effects)
     return [in_order(values, nominal)]
 
 
-def balance_of(data: Data, model: Model) -> Balance:
-    """The balance along the motion of all runs."""
-    return Balance(data.actuator, tuple(motion_of(run, model, ladder(data)[0]) for run in data.runs))
+def balance_of(fitter: Fitter) -> Balance:
+    """The balance along the motion of all recordings."""
+    data, first = fitter.data, constants(fitter.data, fitter.nominal)[0]
+    return Balance(data.actuator, tuple(motion_of(run, fitter.nominal, first) for run in data.runs))
 
 
 def identified(found: Fit, recordings: Sequence[Recording]) -> Identified:
     """A fit with the uncertainty of its values."""
     slopes, data = slopes_at(found, found.explanation), found.fitter.data
     turned = recordings[0].quantity == "position" and data.actuator.quantity == "hall_voltage"
-    return Identified(found, covariance_of(slopes, by_run(found)), slopes, data.per_unit if turned else 1.0)
+    return Identified(found, at_least_effective(slopes, by_run(found)), slopes, data.per_unit if turned else 1.0)

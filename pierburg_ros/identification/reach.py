@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pierburg_ros.identification.fit import Identified, balanced_starts, fit, fitter_of
+import numpy as np
+
+from pierburg_ros.arrays import Signal
+from pierburg_ros.identification.fit import FEWEST, Identified, balance_of, fit, fitter_of
 from pierburg_ros.identification.turn import with_turn
+from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.covariance import RANK
 from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.intervals import ON_BOUND
 from pierburg_ros.plant import Model
@@ -15,6 +20,12 @@ from pierburg_ros.recording import Recording
 FOLLOWED = 2
 """Number of times that the range of a search, a factor of 6 either way, is moved to where the fit left it. Chosen: a
 description that is off by a factor of 200 is better written anew."""
+
+FARTHEST = 200.0
+"""Largest factor by which a number may be wrong, either way. Chosen: a description that is off by more is better
+written anew."""
+DIFFERENCE = 1e-4
+"""Share of a value by which it is moved for a slope. Derived: the balance is smooth, and this is far above rounding."""
 
 
 def fitted(
@@ -30,7 +41,7 @@ def fitted(
     if repeating := what_repeats(found):
         beside = base.with_residual(repeating.residual_torque)
         again = fit(beside, recordings, free, jobs)
-        if EXPLAINED * again.fit.ratio < found.fit.ratio:
+        if EXPLAINED * again.rmse < found.rmse:
             base, found = beside, again
     found, held = _held(found, base, model, recordings, jobs)
     for _ in range(FOLLOWED):
@@ -52,10 +63,31 @@ def begun(
         return model, found
     far = model
     for _ in range(FOLLOWED):
-        for values in balanced_starts(fitter_of(recordings, far), free):
-            far = far.with_values({name: values[name] for name in free})
+        far = farther(far, balance_of(fitter_of(recordings, far)), free)
     again = fit(far, recordings, free, jobs)
-    return (far, again) if again.fit.ratio < found.fit.ratio else (model, found)
+    return (far, again) if again.rmse < found.rmse else (model, found)
+
+
+def farther(model: Model, balance: Balance, free: Sequence[str]) -> Model:
+    """`model` with the values of `free` at which torques balance by a linear estimate: nearly all enter them linearly.
+
+    A search by ratios, which keeps them positive, would end at its bound where one is wrong by far.
+    """
+    names = [name for name in free if model.values[name] > 0.0 and model.range(name)[0] >= 0.0]
+    if not names or balance.size < FEWEST * len(names):
+        return model
+    now, effects = np.array([model.values[name] for name in names]), model.active_effects
+
+    def left(values: Signal) -> Signal:
+        return balance.residual(in_order({**model.values, **dict(zip(names, values, strict=True))}, model), effects)
+
+    moves = DIFFERENCE * np.diag(now)
+    slopes = np.stack([(left(now + move) - left(now - move)) / (2.0 * DIFFERENCE) for move in moves], axis=1)
+    ratio = 1.0 - np.linalg.lstsq(slopes, left(now), rcond=RANK)[0]
+    found = now * np.clip(ratio, 1.0 / FARTHEST, FARTHEST)
+    ranges = (model.range(name) for name in names)
+    bounded = {name: min(max(x, low), high) for name, x, (low, high) in zip(names, found.tolist(), ranges, strict=True)}
+    return model.with_values(in_order(bounded, model))
 
 
 def _held(
@@ -73,8 +105,8 @@ def _held(
             )
             for out in endless
         ]
-        least = min(range(len(tried)), key=lambda place: tried[place].fit.ratio)
-        if tried[least].fit.ratio > EXPLAINED * found.fit.ratio:
+        least = min(range(len(tried)), key=lambda place: tried[place].rmse)
+        if tried[least].rmse > EXPLAINED * found.rmse:
             break
         best, held = tried[least], (*held, endless[least])
     return best, held

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import ndtri, stdtrit
@@ -56,6 +56,17 @@ def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance
     middle = scores.T @ scores * blocks / max(blocks - 1, 1)
     factor = float(stdtrit(max(blocks - jacobian.shape[1], 1), 0.975))
     return Covariance(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
+
+
+def at_least_effective(slopes: Signal, residuals: tuple[Signal, ...]) -> Covariance:
+    """`covariance_of`, or the covariance by effective samples if that says less, on average over coordinates.
+
+    The sums over few long blocks say little of how they vary: at a minimum they cancel each other.
+    """
+    known, residual = covariance_of(slopes, residuals), np.concatenate(residuals)
+    floor = known.noise**2 * repetition(residual) * _inverse(slopes)[0]
+    own, least = np.diagonal(known.matrix), np.maximum(np.diagonal(floor), 1e-300)
+    return known if np.mean(own / least) >= 1.0 else replace(known, matrix=floor)
 
 
 def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal) -> Spread:

@@ -8,15 +8,17 @@ from dataclasses import replace
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.inference.data import FIRST, Run, run_of
+from pierburg_ros.inference.data import FIRST, run_of
 from pierburg_ros.inference.fit import beginning, inertia_time, rungs
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
 from pierburg_ros.plant.following import Pull, follow
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
+from pierburg_ros.recording.noise import noise_of
 
 
 def forgets(actuator: Actuator) -> bool:
@@ -24,68 +26,76 @@ def forgets(actuator: Actuator) -> bool:
     return actuator.load == "spring" or actuator.drive == "voltage"
 
 
-def longest_pull(actuator: Actuator, time: Signal) -> float:
-    """Time constant [s] with which a replay is pulled to samples at each `time` [s]; infinite where none is needed.
+def pull_of(actuator: Actuator, period: float) -> float:
+    """Time constant [s] with which a replay is pulled to samples a `period` [s] apart; infinite where none is needed.
 
     A pendulum or a free rotor driven by a current or a torque forgets nothing. Its simulation drifts from any recording
-    for ever, so it is pulled as weakly as a fit is at its end.
+    for ever, so it is pulled with the actuator's own time.
     """
-    return math.inf if forgets(actuator) else rungs(actuator, float(np.median(np.diff(time))))[-1]
+    return math.inf if forgets(actuator) else rungs(actuator, period)[0]
 
 
-def with_known_input(recording: Recording, actuator: Actuator) -> Recording:
-    """The samples of `recording` under a known input, and not just after an unknown one; InputError without any."""
-    known = np.ones(recording.time.size, dtype=bool)
+def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:
+    """Spans [s] in which messages of the input are missing, and it may have moved the shaft by more than the noise.
+
+    Not those that are shorter than the actuator's own time, if a step between the inputs before and after one, at any
+    moment in it, moves the shaft less.
+    """
+    scales, command = actuator.scales, recording.command
+    largest = float(np.max(np.abs(command.values), initial=0.0)) or 1.0
+    speed = scales.reading / scales.time if recording.quantity != "position" else scales.angle / scales.time
+    noise, found = noise_of(recording.time, recording.measured), []
     for start, end in recording.unknown_input:
+        before, after = command.at(np.array([start, end]), before=0.0)
+        # a step at any moment: its mean is off by its size over the square root of 12
+        moved = speed * (end - start) * abs(after - before) / (math.sqrt(12.0) * largest)
+        if end - start > scales.time or moved > noise:
+            found.append((start, end))
+    return found
+
+
+def parts_of(recording: Recording, actuator: Actuator) -> list[Recording]:
+    """The parts of `recording` under a known input, not just after an unknown one; InputError without any.
+
+    A simulation begins anew in each, where its first samples show the shaft.
+    """
+    known, part = np.ones(recording.time.size, dtype=bool), np.zeros(recording.time.size, dtype=np.int64)
+    for start, end in unknown_spans(recording, actuator):
         known &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    if np.count_nonzero(known) < 2 * FIRST:
+        part += recording.time > end
+    several = [known & (part == number) for number in range(int(part.max(initial=0)) + 1)]
+    found = [
+        replace(recording, time=recording.time[which], measured=recording.measured[which])
+        for which in several
+        if np.count_nonzero(which) >= 2 * FIRST
+    ]
+    if not found:
         raise InputError(
-            f"{recording.name} has fewer than {2 * FIRST} samples under a known {recording.input} (messages are"
+            f"{recording.name} has no {2 * FIRST} samples in a row under a known {recording.input} (messages are"
             " missing). Record again with fewer processes beside."
         )
-    return replace(recording, time=recording.time[known], measured=recording.measured[known])
+    return found
 
 
 def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
     """The samples of `recording` under a known input, and their simulation by `model`, shape (samples,).
 
-    After each stretch of unknown input the simulation begins again where the shaft is then. InputError where none can
-    be simulated.
+    InputError where none can be simulated.
     """
+    parts = parts_of(recording, model.actuator)
+    simulated = np.concatenate([_simulated(model, part) for part in parts])
+    time, measured = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "measured"))
+    refuse_unsimulated(model, simulated, time)
+    return replace(recording, time=time, measured=measured), simulated
+
+
+def _simulated(model: Model, recording: Recording) -> Signal:
+    """The simulation of a recording whose input is known, in its unit, shape (samples,)."""
     nominal = Model.nominal(model.actuator)
-    kept = with_known_input(recording, model.actuator)
-    run = run_of(kept, nominal, 0, np.zeros(kept.time.size, dtype=np.int64))
-    simulated = simulated_run(model, run, longest_pull(model.actuator, run.time), after_unknown(kept))
-    refuse_unsimulated(model, simulated, run.time)
-    return kept, in_unit_of(kept, nominal, simulated)
-
-
-def in_unit_of(recording: Recording, nominal: Model, values: Signal) -> Signal:
-    """`values` of the actuator's sensor in the unit of a `recording`, which may hold the angle in its place."""
-    turned = recording.quantity == "position" and nominal.actuator.quantity == "hall_voltage"
-    return decoded(nominal, values) if turned else values
-
-
-def after_unknown(recording: Recording) -> Flags:
-    """Which samples are the first after a stretch of unknown input, shape (samples,)."""
-    first = np.zeros(recording.time.size, dtype=bool)
-    for _, end in recording.unknown_input:
-        place = int(np.searchsorted(recording.time, end))
-        if 0 < place < recording.time.size:
-            first[place] = True
-    return first
-
-
-def simulated_run(model: Model, run: Run, constant: float, again: Flags) -> Signal:
-    """The simulation of a run, pulled with a time `constant` [s], shape (samples,).
-
-    It begins `again` at some samples, as much as the next ones show.
-    """
-    nominal = Model.nominal(model.actuator)
-    own = inertia_time(nominal) > float(np.median(np.diff(run.time))) and run.quantity != "speed"
-    pull, start = Pull.every(run.time, constant, own), beginning(run, model)
-    if math.isinf(constant) and again.any():
-        seen = np.flatnonzero(again)
-        last = np.minimum(seen + FIRST - 1, run.time.size - 1)
-        pull = Pull(last, seen, np.ones(last.size), np.zeros(last.size))
-    return follow(model, run.inputs, run.time, run.measured, start, pull, angle_per_unit(nominal))
+    run = run_of(recording, nominal, 0, np.zeros(recording.time.size, dtype=np.int64))
+    period = float(np.median(np.diff(run.time)))
+    inertial = inertia_time(nominal) > period and run.quantity != "speed"
+    pull, per_unit = Pull.every(run.time, pull_of(model.actuator, period), inertial), angle_per_unit(nominal)
+    found = follow(model, run.inputs, run.time, run.measured, beginning(run, model), pull, per_unit)
+    turned = recording.quantity == "position" and run.quantity == "hall_voltage"
+    return decoded(nominal, found) if turned else found

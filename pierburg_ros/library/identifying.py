@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.identification.identify import Identification as Found
 from pierburg_ros.identification.identify import identify as identified
-from pierburg_ros.inference.replay import with_known_input
+from pierburg_ros.inference.replay import parts_of
 from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import Readable, recordings_of
 from pierburg_ros.library.result import Result
@@ -125,5 +125,5 @@ def identify(
         identification.save("results/identified")
     """
     start = chosen_model(model, actuator if actuator or model else "pierburg")
-    measured = [with_known_input(each, start.actuator) for each in recordings_of(recordings, start.actuator)]
+    measured = [part for each in recordings_of(recordings, start.actuator) for part in parts_of(each, start.actuator)]
     return Identification(identified(start, measured, free, fixed, jobs), tuple(measured))

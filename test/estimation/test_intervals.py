@@ -15,8 +15,8 @@ from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.estimator import Estimator
 from pierburg_ros.estimation.intervals import estimates
 from pierburg_ros.estimation.likelihood import SURE
-from pierburg_ros.inference.slopes import FINE
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.slopes import FINE
 
 X, Y = "spring_preload", "coulomb_friction"
 WIDE = 1e4

@@ -21,7 +21,7 @@ from pierburg_ros.identification.fit import climbed, fitter_of
 from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
-from pierburg_ros.inference.fit import Fitter, ladder
+from pierburg_ros.inference.fit import Fitter
 from pierburg_ros.inference.least_squares import jacobian
 from pierburg_ros.plant import Model
 
@@ -159,5 +159,5 @@ def judge(
 def _left(truth: Model, other: Model, time: Signal, duty: Signal, noise: float) -> float:
     """What the other explanation leaves of the response of the `truth` [measured unit, root mean square]."""
     free, explanation = _free(truth, other, time, duty, noise), Explanation(refitted_names(other))
-    near = climbed(free.pulled(ladder(free.data)[0]), explanation, other.values)
+    near = climbed(free, explanation, other.values)
     return rms(free.fit(explanation, near.values).residual) * noise

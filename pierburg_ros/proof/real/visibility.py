@@ -6,17 +6,21 @@ beside the effect. No search is asked: only the recording as it is, its model, a
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pierburg_ros.arrays import Signal
-from pierburg_ros.inference.data import data_of
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.data import all_fitted
+from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fitter, ladder
 from pierburg_ros.inference.least_squares import BRIEF
+from pierburg_ros.inference.motion import motion_of
+from pierburg_ros.inference.replay import parts_of, pull_of
 from pierburg_ros.inference.search import free_parameters
+from pierburg_ros.inference.shortlist import independent
 from pierburg_ros.plant import Model
 from pierburg_ros.proof.visibility import VISIBLE
 from pierburg_ros.recording import Recording
@@ -26,7 +30,8 @@ from pierburg_ros.recording import Recording
 class Visibility:
     """How far a change stands out of what remains.
 
-    `distance` is squared, from the nearest single drift, in standard deviations of what remains, in effective samples. `moves` is what the change leaves in the signal once all that may drift is
+    `distance` is squared, from the nearest single drift, in standard deviations of what remains, in effective samples
+    of that. `moves` is what the change leaves in the signal once all that may drift is
     refitted, `remains` what the model without it misses then; root mean squares in the measured unit.
     """
 
@@ -43,25 +48,24 @@ class Visibility:
 def visibility(recording: Recording, model: Model, changed: Model, name: str) -> Visibility:
     """Judge what changes a `recording` of a machine like `model` as it changes that to `changed`, by the number `name`.
 
-    All is linear around the model, with the longest pull of a fit.
     InputError where the recording cannot be used.
     """
-    data = data_of([recording], model)
-    fitter = Fitter(data, model, ladder(data)[-1])
+    data = all_fitted(parts_of(recording, model.actuator), model)
+    fitter = Fitter(data, model, pull_of(model.actuator, data.period))
+    ends = np.cumsum([run.time.size for run in data.runs])[:-1]
+    lefts = np.split(fitter.residual(changed) * data.noise, ends)
+    runs = [replace(run, measured=run.measured - left) for run, left in zip(data.runs, lefts, strict=True)]
+    put_in = replace(fitter, data=replace(data, runs=tuple(runs)))
     drifts = tuple(each for each in free_parameters(model) if each != name)
-    left = fitter.fit(Explanation(drifts), model.values, BRIEF)
-    described = fitter.fit(Explanation(), model.values, 0)
-    change = (fitter.residual(changed) - fitter.residual(model))[data.train]
-    slopes = {drift: fitter.slopes(described, Explanation((drift,))) for drift in drifts}
-    counted = left.repetition * max(left.ratio**2, 1.0)
-    nearest = min((_beside(change, slope) for slope in slopes.values()), default=float(change @ change)) / counted
-    together = np.concatenate([np.zeros((change.size, 0)), *slopes.values()], axis=1)
-    moves = math.sqrt(_beside(change, together) / change.size) * data.noise
-    return Visibility(nearest, moves, left.ratio * data.noise)
+    nearest = min(put_in.fit(Explanation((drift,)), model.values, BRIEF).chi2 for drift in drifts)
+    remains = fitter.fit(Explanation(), model.values, 0)
+    balance = Balance(data.actuator, tuple(motion_of(run, model, ladder(data)[0]) for run in data.runs))
+    told = independent(balance, model, drifts)
+    distance = nearest / max(remains.ratio**2 * remains.repetition, 1.0)
+    return Visibility(distance, _left(put_in, told), _left(fitter, told))
 
 
-def _beside(change: Signal, slopes: Signal) -> float:
-    """Squared size of a change that no combination of some slopes, shape (samples, drifts), makes."""
-    basis = np.linalg.qr(slopes)[0]
-    rest = change - basis @ (basis.T @ change)
-    return float(rest @ rest)
+def _left(fitter: Fitter, drifts: Sequence[str]) -> float:
+    """What all that may drift leaves of measured signals, root mean square in the measured unit."""
+    found = fitter.fit(Explanation(tuple(drifts)), fitter.nominal.values, BRIEF)
+    return rms(found.residual) * fitter.data.noise

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from support.recordings import NOISE, NOMINAL, recording
 
-from pierburg_ros.estimation.data import data_of
-from pierburg_ros.proof.real import visibility as module
 from pierburg_ros.proof.real.visibility import visibility
 
 DELAY = "input_delay.delay"
@@ -53,13 +51,3 @@ def test_a_change_that_a_drift_makes_as_well_is_not_shown(clean):
     """At a standstill and in motion a voltage drives as a torque constant over a resistance does."""
     supply = visibility(clean, NOMINAL, NOMINAL.with_values({"supply_voltage": 13.6}), "supply_voltage")
     assert supply.moves < supply.remains and not supply.shown
-
-
-def test_a_delay_behind_a_filter_of_the_input_is_not_shown(clean, monkeypatch):
-    """Each recording tells the time of that filter anew, and a shorter one does the same."""
-    data = data_of([clean], NOMINAL)
-    filtered = replace(data, runs=tuple(replace(run, input_lag=0.08) for run in data.runs))
-    monkeypatch.setattr(module, "data_of", lambda *_: filtered)
-    stiffer = NOMINAL.with_values({"static_friction.breakaway_torque": 0.3})
-    assert not visibility(clean, NOMINAL, delayed(0.02), DELAY).shown
-    assert visibility(clean, NOMINAL, stiffer, "static_friction.breakaway_torque").shown
