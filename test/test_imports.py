@@ -35,8 +35,8 @@ ALLOWED["inference"] = ALLOWED["estimation"] | {"estimation"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["estimation"] | {"estimation", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
-ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
+ALLOWED["audit"] = ALLOWED["plant"] | {"plant", "recording", "inference"}
+ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "estimation", "workers", "deadline", "pages"}
 ALLOWED["proof"] = (
     ALLOWED["diagnosis"]
     | {"diagnosis", "comparison", "control", "closed_loop", "processes"}

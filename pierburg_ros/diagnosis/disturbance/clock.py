@@ -8,13 +8,17 @@ from functools import partial
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.audit.timing import DRIFTS, EARLY
 from pierburg_ros.diagnosis.disturbance.moments import exact, squared_error
 from pierburg_ros.estimation.data import Data
 from pierburg_ros.estimation.run import Run
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 
+EARLY = 2.5
+"""Samples by which an input must be stamped late. Derived: one that is recorded one sample late, as one sample may be,
+and the rounding of the lag."""
+DRIFTS = 10.0
+"""Samples by which the lag must drift from end to end. Chosen: 20 ms at 500 Hz; less is a small delay at either end."""
 FARTHEST = 2.0
 """Largest offset of an input, late or early, that is searched at the beginning of a recording, in the actuator's own
 time. Chosen: 0.19 s for the valve; the audit finds larger ones."""

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
-from pierburg_ros.audit.signals import Signals
 from pierburg_ros.deadline import Deadline
 from pierburg_ros.diagnosis.remainder.around import goes_around, supported_around, vouched_around
 from pierburg_ros.diagnosis.remainder.left_out import BETTER, LeftOut
 from pierburg_ros.diagnosis.remainder.shared import shared_effects
 from pierburg_ros.diagnosis.search.found import Found
 from pierburg_ros.diagnosis.search.scored import scored
+from pierburg_ros.diagnosis.search.signals import Signals
 from pierburg_ros.diagnosis.search.supported import likelier, supported, told_apart, with_play
 from pierburg_ros.diagnosis.search.tried import Progress
 from pierburg_ros.diagnosis.search.weighing import Supported, Weighing, Weight

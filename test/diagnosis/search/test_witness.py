@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.servo import LACKING, SERVO, TIME, in_loop
 
-from pierburg_ros.audit.signals import Signals
+from pierburg_ros.diagnosis.search.signals import Signals
 from pierburg_ros.diagnosis.diagnose import evidence
 from pierburg_ros.diagnosis.remainder.standing import Standing, standing
 from pierburg_ros.diagnosis.search.beam import Beam
