@@ -7,6 +7,7 @@ physics is missing, and nothing is said here.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from pierburg_ros.audit.fault import Fault
@@ -17,9 +18,12 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
 BALANCED = 0.05
-"""Share of the command's variation that is left, at most, where torques balance. Chosen."""
+"""Share of the command's variation that is left, at most, where torques balance. Measured: clean recordings of a
+simulated valve leave 0.035 at most (n = 149), of a real servo, arm and motor 0.04 (n = 13); with a wrong sign, unit or
+signal 0.2 or more is left."""
 BETTER = 0.2
-"""Share of what is left as read that a fault may leave once it is undone. Chosen."""
+"""Share of what is left as read that a fault may leave once it is undone. Measured: of the right fault 0.05 at most
+(n = 16); not varied."""
 
 
 def audit(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
@@ -29,34 +33,39 @@ def audit(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
 
 def faults(held: Held) -> Iterator[Fault]:
     """What is wrong with one recording: facts of its signals, or else the fault that balances it."""
-    recording = held.recording
-    told = [fact for fact in facts(held) if fact.signal not in recording.exact]
-    for fact in told:
-        yield Fault(recording.name, fact.signal, fact.what, fact.evidence, fact.mend)
+    exact = held.recording.exact
+    told = [fact for fact in facts(held) if fact.signal not in exact]
+    yield from told
     read = held.as_read()
     if told or read.left <= BALANCED:
         return
-    tried = [(row, row.undone()) for row in rows(held) if row.kept or row.signal not in recording.exact]
+    tried = [(row, row.undone()) for row in rows(held) if row.of_times or row.signal not in exact]
     mending = [(row, undone) for row, undone in tried if mends(undone, read)]
     if mending:
-        best = min((undone for _, undone in mending), key=lambda each: each.left)
-        alike = [(row, undone) for row, undone in mending if best.over(undone) <= TIED]
-        yield fault(recording, read, *alike[0], [row for row, _ in alike[1:]])
+        yield the_fault(held.recording, read, mending)
 
 
 def mends(undone: Weighed, read: Weighed) -> bool:
     """Whether a recording balances far better once a fault is undone, and well."""
-    return undone.left <= min(BALANCED, BETTER * read.left) and undone.over(read) >= SIGNIFICANT
+    return undone.left <= min(BALANCED, BETTER * read.left) and evidence(undone, read.left, undone.left) >= SIGNIFICANT
 
 
-def fault(recording: Recording, read: Weighed, row: Row, undone: Weighed, alike: Sequence[Row]) -> Fault:
-    """The fault that a row tells, in numbers, and what else would do as well."""
-    evidence = (
+def evidence(undone: Weighed, worse: float, better: float) -> float:
+    """Evidence for what leaves less, in -2 log likelihood of effective samples."""
+    return undone.effective * math.log(max(worse, 1e-12) / max(better, 1e-12))
+
+
+def the_fault(recording: Recording, read: Weighed, mending: Sequence[tuple[Row, Weighed]]) -> Fault:
+    """Of all rows that mend, the one with which the actuator as described balances best; of those alike the first."""
+    least = min((undone for _, undone in mending), key=lambda each: each.described)
+    alike = [pair for pair in mending if evidence(least, pair[1].described, least.described) <= TIED]
+    same = [pair for pair in alike if pair[0].mend == alike[0][0].mend]
+    row, undone = min(same, key=lambda pair: pair[1].described)
+    words = (
         f"The actuator, its numbers free within a factor of {OFF:g}, and every effect that it may have leave"
         f" {100.0 * read.left:.3g} % of the {recording.input}'s variation as it is read, {100.0 * undone.left:.2g} %"
-        f" once that is mended (evidence {undone.over(read):.0f} in {undone.effective:.0f} samples)."
+        f" once that is mended, in {undone.effective:.0f} independent samples."
     )
-    others = [f"{other.mend} ({other.signal} {other.what})" for other in alike if other.signal != row.signal]
-    if others:
-        evidence += f" As well does {others[0]}."
-    return Fault(recording.name, row.signal, row.what, evidence, row.mend)
+    others = [f"{other.mend} ({other.signal} {other.what})" for other, _ in alike if other.signal != row.signal]
+    words += f" As well does {others[0]}." if others else ""
+    return Fault(recording.name, row.signal, row.what, words, row.mend)

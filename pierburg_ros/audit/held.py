@@ -12,12 +12,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import DECLARED, EFFECTS, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
+from pierburg_ros.inference.bounded import Bounded, Column
 from pierburg_ros.inference.data import run_of
 from pierburg_ros.inference.evidence import repetition
 from pierburg_ros.inference.explanation import Variant
@@ -41,24 +41,17 @@ SAMPLES = 40
 LOADS = ("spring_preload", "spring_stiffness", "gravity_torque", "total_inertia", "coulomb_friction")
 """Base parameters in which the torque that the motor has to give is linear."""
 
-Column = tuple[Signal, float, float]
-"""What one quantity adds to the torque [N.m], shape (samples,), and the least and the most of it."""
-
 
 @dataclass(frozen=True)
 class Weighed:
-    """The share of the command's variation that is `left`, and as how many samples it counts."""
+    """The share of the command's variation that is `left`, all where no motion is seen, and the samples it counts as.
 
-    left: float
+    `described` is the share without effects.
+    """
+
+    left: float = 1.0
     effective: float = 1.0
-
-    def over(self, worse: Weighed) -> float:
-        """Evidence over what leaves more, in -2 log likelihood of effective samples."""
-        return self.effective * math.log(max(worse.left, 1e-12) / max(self.left, 1e-12))
-
-
-NOTHING = Weighed(1.0)
-"""What is left where no motion is seen."""
+    described: float = 1.0
 
 
 class Held:
@@ -68,23 +61,18 @@ class Held:
         self.recording, self.nominal, self.motion = recording, nominal, seen(recording, nominal)
         self.impossible = impossible(recording, nominal)
         if self.motion is not None:
-            columns = [*base(self.motion, nominal), *possible(self.motion, nominal)]
-            matrix = np.stack([column for column, _, _ in columns], axis=1)
-            lower, upper = (np.array([column[place] for column in columns]) for place in (1, 2))
-            self.basis, self.triangle, self.low, self.high = prepared(matrix, lower, upper)
+            own = list(base(self.motion, nominal))
+            self.described, self.allowed = Bounded(own), Bounded([*own, *possible(self.motion, nominal)])
 
     def weighed(self, late: float = 0.0, rate: float = 0.0) -> Weighed:
         """What is left where the command acted `late` [s] before its stamp, and earlier by `rate` with each second."""
         if self.motion is None:
-            return NOTHING
+            return Weighed()
         whole = self.motion.whole
         moved = np.interp(whole.time * (1.0 + rate) + late, whole.time, whole.raw_command)
         target = self.motion.driven(self.nominal.values, whole.smooth(moved)[self.motion.samples])
-        known = self.basis.T @ target
-        # the part that no column reaches, and what the bounds leave of the other one
-        outside = target - self.basis @ known
-        inside = self.basis @ (known - self.triangle @ bounded(self.triangle, known, self.low, self.high))
-        return self.shared(outside + inside, target)
+        residual, plain = self.allowed.residual(target), self.described.residual(target)
+        return Weighed(self.left(residual, target), residual.size / repetition(residual), self.left(plain, target))
 
     def as_read(self) -> Weighed:
         """What is left of the recording as it is read; a command may act as late as a delay is plausible."""
@@ -93,19 +81,17 @@ class Held:
     def followed(self, gain: float) -> Weighed:
         """What is left of a command that the shaft follows, `gain` times its angle [rad], behind a lag."""
         if self.motion is None:
-            return NOTHING
-        rates = np.stack([self.motion.velocity, self.motion.acceleration], axis=1)
-        apart = self.motion.command - gain * self.motion.angle
-        basis, triangle, low, high = prepared(rates, np.zeros(2), np.full(2, np.inf))
-        return self.shared(
-            apart - basis @ triangle @ bounded(triangle, basis.T @ apart, low, high), self.motion.command
-        )
+            return Weighed()
+        lag = Bounded([(rate, 0.0, math.inf) for rate in (self.motion.velocity, self.motion.acceleration)])
+        residual = lag.residual(self.motion.command - gain * self.motion.angle)
+        left = self.left(residual, self.motion.command)
+        return Weighed(left, residual.size / repetition(residual), left)
 
-    def shared(self, residual: Signal, target: Signal) -> Weighed:
+    def left(self, residual: Signal, target: Signal) -> float:
         """What a `residual` is of the variation of its `target`; samples that cannot be are all left."""
         varies = float(np.sum(np.square(target - np.mean(target))))
-        left = min(float(residual @ residual) / varies, 1.0) if varies > 0.0 else 1.0
-        return Weighed(self.impossible + (1.0 - self.impossible) * left, residual.size / repetition(residual))
+        share = min(float(residual @ residual) / varies, 1.0) if varies > 0.0 else 1.0
+        return self.impossible + (1.0 - self.impossible) * share
 
 
 def seen(recording: Recording, nominal: Model) -> Motion | None:
@@ -199,26 +185,3 @@ def delays(nominal: Model) -> Iterator[float]:
             if effect.dead_time is not None:
                 assert not callable(variant.starts)
                 yield from (effect.in_units(start, nominal.scales)[effect.dead_time] for start in variant.starts)
-
-
-def prepared(matrix: Signal, low: Signal, high: Signal) -> tuple[Signal, Signal, Signal, Signal]:
-    """Columns of the length 1, decomposed (Q R), and the bounds of their coefficients."""
-    length = np.linalg.norm(matrix, axis=0)
-    kept = length > 1e-9 * max(float(np.max(length)), 1e-300)
-    basis, triangle = np.linalg.qr(matrix[:, kept] / length[kept])
-    return basis, triangle, low[kept] * length[kept], high[kept] * length[kept]
-
-
-def bounded(triangle: Signal, target: Signal, low: Signal, high: Signal) -> Signal:
-    """The coefficients between `low` and `high` with the least squares of triangle x - target.
-
-    An upper bound is a slack that is not negative (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter
-    23): weighed a thousand times, it holds to a millionth.
-    """
-    size, ends = low.size, np.flatnonzero(np.isfinite(high))
-    slack = np.zeros((ends.size, size + ends.size))
-    slack[np.arange(ends.size), ends] = slack[np.arange(ends.size), size + np.arange(ends.size)] = 1e3
-    known = np.vstack([np.hstack([triangle, np.zeros((triangle.shape[0], ends.size))]), slack])
-    wanted = np.concatenate([target - triangle @ low, 1e3 * (high - low)[ends]])
-    above, _ = nnls(known, wanted, maxiter=30 * known.shape[1])
-    return np.asarray(np.clip(low + above[:size], low, high))

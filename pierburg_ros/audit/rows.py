@@ -8,10 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.held import BEYOND, Held, Weighed
 from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Model, simulate
@@ -36,14 +38,14 @@ TIMES = {"ms": ("s", 1e-3), "us": ("s", 1e-6), "ns": ("s", 1e-9), "s": ("ms", 1e
 class Row:
     """A fault of a `signal`: what is said of it, what mends it, and what the balance leaves once it is undone.
 
-    `kept` is whether it is looked for where the signal is said to be exact.
+    One of times is looked for in a signal that is said to be exact, too.
     """
 
     signal: str
     what: str
     mend: str
     undone: Callable[[], Weighed]
-    kept: bool = False
+    of_times: bool = False
 
 
 def rows(held: Held) -> Iterator[Row]:
@@ -75,8 +77,7 @@ def of_command(held: Held) -> Iterator[Row]:
         mend = f"name the applied {name}: `{name}: {{topic: ...}}`"
         for gain in (1.0, 1.0 / travel):
             if gain > 0.0:
-                undone = follow(held, gain)
-                yield Row(name, f"a setpoint in place of the {name}", mend, undone)
+                yield Row(name, f"a setpoint in place of the {name}", mend, partial(held.followed, gain))
 
 
 def of_sensor(held: Held) -> Iterator[Row]:
@@ -89,13 +90,15 @@ def of_sensor(held: Held) -> Iterator[Row]:
     yield linear(held, name, "negated" if name == "hall_voltage" else "polarity reversed", -1.0)
     turning = name != "hall_voltage" and nominal.actuator.motion == "rotary"
     units = (SPEEDS if name == "speed" else ANGLES) if turning else {}
-    for what, (unit, scale) in {**THOUSANDS, **units}.items():
+    for what, (unit, scale) in units.items():
         yield linear(held, name, what, scale, unit=unit)
     if np.array_equal(measured, np.round(measured)):
         for bits in (8, 10, 12, 13, 14, 16):
             for full in (3.3, 5.0) if name == "hall_voltage" else (math.tau,):
                 what = f"counts read as {recording.unit} ({bits} bit over {full:.4g})"
                 yield linear(held, name, what, full / (2**bits - (name == "hall_voltage")))
+    for what, (unit, scale) in THOUSANDS.items():
+        yield linear(held, name, what, scale, unit=unit)
     if turning and (gear := nominal.values.get("gear_ratio", 1.0)) != 1.0:
         yield linear(held, name, "of the motor, before the gear", 1.0 / gear)
     if math.isfinite(opened - closed) and name != "speed":
@@ -111,18 +114,19 @@ def of_time(held: Held) -> Iterator[Row]:
     recording, name = held.recording, held.recording.input
     clock = recording.clock.line if recording.clock else "time: {{unit: {}}}".format
     for unit, (read, scale) in TIMES.items():
-        yield Row("time", f"{unit} read as {read}", f"`{clock(unit)}`", reread(held, timed(recording, scale)), True)
+        undone = partial(reread, timed(recording, scale), held.nominal)
+        yield Row("time", f"{unit} read as {read}", f"`{clock(unit)}`", undone, True)
     if held.motion is None:
         return
     own = held.nominal.scales.time
-    step, most = max(held.motion.step, own / 8.0), LATEST * own
+    step, most = max(held.motion.step, own / 4.0), LATEST * own
     sender = f"choose the clock of the sender with --time stamp or --time publish, or record the applied {name}"
     for late in map(float, np.arange(step, most, step)):
-        yield Row(name, f"stamped {1e3 * late:.3g} ms late", sender, shift(held, late, 0.0), True)
+        yield Row(name, f"stamped {1e3 * late:.3g} ms late", sender, partial(held.weighed, late), True)
     one = f"stamp {name} and {recording.quantity} by one clock: choose it with --time stamp, publish or log"
     for drift in map(float, np.arange(2.0 * step, most, 2.0 * step)):
-        for way, rate in (("slow", drift / recording.duration), ("fast", -drift / recording.duration)):
-            yield Row(name, f"clock {100.0 * abs(rate):.2g} % {way}", one, shift(held, 0.0, rate), True)
+        for way, rate in (("fast", drift / recording.duration), ("slow", -drift / recording.duration)):
+            yield Row(name, f"clock {100.0 * abs(rate):.2g} % {way}", one, partial(held.weighed, 0.0, rate), True)
 
 
 def exchanged(held: Held) -> Row:
@@ -132,7 +136,8 @@ def exchanged(held: Held) -> Row:
     mend = f"`{other[1].line(one[0])}` and `{one[1].line(other[0])}`"
     command = Channel(recording.time, recording.measured)
     changed = replace(recording, measured=recording.command.at(recording.time), command=command, losses=())
-    return Row(recording.quantity, f"{recording.input} and {recording.quantity} exchanged", mend, reread(held, changed))
+    what = f"{recording.input} and {recording.quantity} exchanged"
+    return Row(recording.quantity, what, mend, partial(reread, changed, held.nominal))
 
 
 def linear(held: Held, signal: str, what: str, scale: float, offset: float = 0.0, unit: str = "") -> Row:
@@ -147,7 +152,7 @@ def linear(held: Held, signal: str, what: str, scale: float, offset: float = 0.0
         channel: Channel = getattr(recording, role)
         one: dict[str, Any] = {role: Channel(channel.time, scale * channel.values + offset)}
         changed = replace(recording, **one)
-    return Row(signal, what, mend, reread(held, changed))
+    return Row(signal, what, mend, partial(reread, changed, held.nominal))
 
 
 def timed(recording: Recording, unit: float) -> Recording:
@@ -168,50 +173,25 @@ def ends(held: Held) -> tuple[float, float]:
     return actuator.lower_stop, actuator.upper_stop
 
 
-def reread(held: Held, changed: Recording) -> Callable[[], Weighed]:
+def reread(changed: Recording, nominal: Model) -> Weighed:
     """What another recording leaves."""
-    return lambda: Held(changed, held.nominal).as_read()
+    return Held(changed, nominal).as_read()
 
 
-def shift(held: Held, late: float, rate: float) -> Callable[[], Weighed]:
-    """What is left of a command that acted earlier than it is stamped."""
-    return lambda: held.weighed(late, rate)
-
-
-def follow(held: Held, gain: float) -> Callable[[], Weighed]:
-    """What is left of a command that the shaft follows."""
-    return lambda: held.followed(gain)
-
-
-@dataclass(frozen=True)
-class Fact:
-    """A fault that shows in a signal by itself: what is said of it, how it shows, and what mends it."""
-
-    signal: str
-    what: str
-    evidence: str
-    mend: str
-
-
-def facts(held: Held) -> Iterator[Fact]:
-    """Every fault that shows without a balance."""
+def facts(held: Held) -> Iterator[Fault]:
+    """Every fault that shows in a signal by itself."""
     recording, nominal = held.recording, held.nominal
     name, values = recording.input, recording.command.values
-    if np.ptp(recording.measured) == 0.0 and would_move(recording, nominal):
-        evidence = f"It reads {recording.measured[0]:.4g} throughout, while the {name} would move the actuator."
-        yield Fact(recording.quantity, "constant", evidence, f"name the sensor: `{recording.quantity}: {{topic: ...}}`")
+    still, unsteered = np.ptp(recording.measured) == 0.0, np.ptp(values) == 0.0
+    applied, sensed = (f"name the signal: `{each}: {{topic: ...}}`" for each in (name, recording.quantity))
+    if still and np.ptp(simulate(nominal, inputs_of(recording), recording.time)) > BEYOND * nominal.scales.reading:
+        shown = f"It reads {recording.measured[0]:.4g} throughout, while the {name} would move the actuator."
+        yield Fault(recording.name, recording.quantity, "constant", shown, sensed)
     swings = nominal.actuator.load == "pendulum" or recording.enabled is not None
-    if np.ptp(values) == 0.0 and held.motion is not None and not swings and np.ptp(held.motion.direction) > 0.0:
-        evidence = f"It is {values[0]:.4g} throughout, while the shaft moves to and fro."
-        yield Fact(name, "constant", evidence, f"name the applied {name}: `{name}: {{topic: ...}}`")
-    if recording.setpoints is not None and np.ptp(values) > 0.0:
-        wanted = recording.setpoints.at(recording.command.time)
-        if np.array_equal(wanted, values):
-            mend = f"name the applied {name}: `{name}: {{topic: ...}}`"
-            yield Fact(name, f"a setpoint in place of the {name}", "It equals the recorded setpoints.", mend)
-
-
-def would_move(recording: Recording, nominal: Model) -> bool:
-    """Whether the actuator as described would move by its inputs."""
-    far = nominal.scales.reading
-    return bool(np.ptp(simulate(nominal, inputs_of(recording), recording.time)) > BEYOND * far)
+    if unsteered and not swings and held.motion is not None and np.ptp(held.motion.direction) > 0.0:
+        shown = f"It is {values[0]:.4g} throughout, while the shaft moves to and fro."
+        yield Fault(recording.name, name, "constant", shown, applied)
+    wanted = None if recording.setpoints is None else recording.setpoints.at(recording.command.time)
+    if wanted is not None and not unsteered and np.array_equal(wanted, values):
+        what = f"a setpoint in place of the {name}"
+        yield Fault(recording.name, name, what, "It equals the recorded setpoints.", applied)
