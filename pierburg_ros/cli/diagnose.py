@@ -16,6 +16,7 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.options.recordings import (
+    ExactOption,
     ResultsOption,
     SignalsOption,
     TimeOption,
@@ -54,6 +55,7 @@ def diagnose(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    exact: ExactOption = None,
     rerun: RerunOption = None,
     jobs: JobsOption = None,
     budget: BudgetOption = "1",
@@ -74,7 +76,8 @@ def diagnose(
 
     def taken(paths: Sequence[Path], named: Path | None) -> list[Recording]:
         topics = topics_of(topic)
-        return [read(each, time=time, topics=topics, signals=named, actuator=nominal.actuator) for each in paths]
+        sure, machine = exact or (), nominal.actuator
+        return [read(each, time=time, topics=topics, signals=named, actuator=machine, exact=sure) for each in paths]
 
     measured = taken(recordings, signals)
     try:

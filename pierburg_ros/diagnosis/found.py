@@ -18,7 +18,7 @@ from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, rms_of
 from pierburg_ros.inference.infer import Inferred
 from pierburg_ros.inference.intervals import Interval, intervals
 from pierburg_ros.inference.least_squares import FULL
-from pierburg_ros.inference.replay import longest_pull
+from pierburg_ros.inference.replay import pull_of
 from pierburg_ros.inference.search import key
 from pierburg_ros.plant import Model
 
@@ -91,8 +91,7 @@ class Found:
     @property
     def shown(self) -> Fitter:
         """The simulation that errors are shown of: free, or pulled where an actuator forgets nothing by itself."""
-        pulls = (longest_pull(self.data.actuator, run.time) for run in self.data.runs)
-        return self.written.fitter.pulled(max(pulls))
+        return self.written.fitter.pulled(pull_of(self.data.actuator, self.data.period))
 
     def residual(self, fit: Fit) -> Signal:
         """What a fit leaves over all runs [measured unit], simulated as it is shown."""

@@ -64,7 +64,8 @@ def read_recording(
         else:
             made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen, preferred)
         check_bounds(made)
-    return replace(made, path=path)
+    exact = {DRIVING.get(signal, signal) for signal, source in made.sources.items() if source.exact}
+    return replace(made, path=path, exact=frozenset(exact))
 
 
 def wanted(chosen: SignalMap) -> Wanted:
@@ -126,6 +127,9 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         path=None,
         read_with=(),
         file_times=file_times(timed["measured"], first.time),
+        sources={each.signal: each.source for each in found.values()},
+        clock=topics.chosen.time,
+        exact=frozenset(),
     )
 
 

@@ -16,7 +16,7 @@ from pierburg_ros.recording.signal_map.source import SignalMap, Source, TimeSour
 from pierburg_ros.recording.signals import SIGNALS, TIME, signal_of
 from pierburg_ros.recording.units import COUNTS, USUAL, Unit, unit_of
 
-KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
+KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign", "exact")
 TIME_KEYS = ("topic", "field", "column", "unit")
 TIME_UNITS = ("s", "ms", "us", "ns")
 FORM = "expected {topic: /name, field: path} or {column: name}, with unit, scale, offset and sign where needed"
@@ -113,6 +113,8 @@ class Entry:
             self.origin,
             "" if unit.written in (COUNTS, "1") else next(each for each in wanted if unit.measures(each)),
             "unit" in self.given or "scale" in self.given,
+            unit.written if "unit" in self.given else "",
+            self.exact(),
         )
 
     def time(self) -> TimeSource:
@@ -211,6 +213,13 @@ class Entry:
         if isinstance(value, bool) or value not in (1, -1):
             raise self.wrong("sign", shown(value), "1 or -1")
         return int(value)
+
+    def exact(self) -> bool:
+        """Whether the signal is what it is read as, by the word of a person."""
+        value = self.given.get("exact", False)
+        if not isinstance(value, bool):
+            raise self.wrong("exact", shown(value), "true or false")
+        return value
 
     def files(self) -> tuple[str, ...]:
         """Names of files in the folder of the recording."""
