@@ -31,10 +31,10 @@ def diagnose(
 ) -> Result:
     """Locate, name and model what `nominal` lacks, from recordings alone, with `jobs` fits at a time (all cores).
 
-    `progress` is given what is being tried. Where the `budget` is spent, or after Ctrl-C, the result is the best verdict
-    so far, marked as such. If recordings of the user's own `simulation` are given, these replace the nominal model:
-    `nominal` is fitted to them first. If signals are not what they are read as, only that is reported, unless `force` is
-    set. InputError if the recordings cannot be used.
+    `progress` is given what is being tried. Where the `budget` is spent, or after Ctrl-C, the result is the best
+    verdict so far, marked as such. If recordings of the user's own `simulation` are given, these replace the nominal
+    model: `nominal` is fitted to them first. If signals are not what they are read as, only that is reported, unless
+    `force` is set. InputError if the recordings cannot be used.
     """
     each_cleaned = [cleaned(recording, number) for number, recording in enumerate(recordings)]
     recordings = [each.recording for each in each_cleaned]

@@ -23,8 +23,8 @@ from pierburg_ros.inference.search import key
 from pierburg_ros.plant import Model
 
 MISMATCH = 0.02
-"""Squared error above the noise, as a share of the squared noise, below which there is none. Derived: the noise is known
-to about a hundredth, its square to twice that."""
+"""Squared error above the noise, as a share of the squared noise, below which there is none. Derived: the noise is
+known to about a hundredth, its square to twice that."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What the model still lacks: the residual of the balance over angle, velocity, load and time, in words and as a map."""
+"""What the model still lacks: the residual of the balance over angle, velocity, load and time, and as a map."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.schema import Direction, RemainingShape, ResidualTorque, TorqueOverTime
+from pierburg_ros.diagnosis.schema import Direction, Over, RemainingShape, ResidualTorque, TorqueOverTime
 from pierburg_ros.inference.balance import Balance, missing
 from pierburg_ros.inference.fit import Fit
 from pierburg_ros.inference.motion import Motion
 from pierburg_ros.inference.shortlist import DEPENDENT, balanced, projected
+from pierburg_ros.pages.numbers import percent
 from pierburg_ros.plant import Model
 
 MOST = 3
@@ -35,9 +36,9 @@ STRETCHES = 60
 class Lacking:
     """The load torque [N.m] that a model lacks along all motions, positive closes, each shape (samples,).
 
-    `torque` is with the parameters that the balance would have, `own` with those of the fit; angle [rad], 0 where only a
-    speed is measured, velocity [rad/s], time [s] and motor torque [N.m] are beside it. Columns of `basis` are what
-    parameters could make of it. `turns`: the shaft goes round.
+    `torque` is with the parameters that the balance would have, `own` with those of the fit; angle [rad], 0 where
+    only a speed is measured, velocity [rad/s], time [s] and motor torque [N.m] are beside it. Columns of `basis` are
+    what parameters could make of it. `turns`: the shaft goes round.
     """
 
     torque: Signal
@@ -52,7 +53,7 @@ class Lacking:
     @property
     def alone(self) -> Signal:
         """What changes of the parameters cannot make of the missing torque."""
-        return self.torque - self.basis @ (self.basis.T @ self.torque)
+        return np.asarray(self.torque - self.basis @ (self.basis.T @ self.torque))
 
 
 def lacking(fit: Fit, balance: Balance) -> Lacking:
@@ -81,7 +82,7 @@ def lacking(fit: Fit, balance: Balance) -> Lacking:
 
 
 Columns = Sequence[Signal]
-FORMS: Mapping[tuple[str, str], Callable[[Lacking], Columns]] = {
+FORMS: Mapping[tuple[Over, str], Callable[[Lacking], Columns]] = {
     ("constant", "constant"): lambda at: [np.ones(at.torque.size)],
     ("velocity", "direction"): lambda at: [np.sign(at.velocity)],
     ("velocity", "linear"): lambda at: [at.velocity],
@@ -104,7 +105,7 @@ def shapes(at: Lacking) -> list[RemainingShape]:
     if left.size == 0 or whole <= 0.0:
         return []
     for _ in range(MOST):
-        best, share, pair = None, WORTH, ("", "")
+        best, share, pair = None, WORTH, next(iter(FORMS))
         for form, columns in FORMS.items():
             basis = _beside(columns(at), taken)
             if basis.size and (part := float(np.sum(np.square(basis.T @ left))) / whole) > share:
@@ -138,7 +139,7 @@ def _way(made: Signal, left: Signal, velocity: Signal) -> Direction:
     return "negative" if ways[1] > ONE_WAY * sum(ways) else "both"
 
 
-OVER = {
+FORM = {
     ("constant", "constant"): "is constant",
     ("velocity", "direction"): "changes sign with the direction",
     ("velocity", "linear"): "grows with the speed",
@@ -162,8 +163,7 @@ def in_words(found: Sequence[RemainingShape], at: Lacking) -> str:
         return "the shaft hardly moves, so no missing torque can be read from its motion"
     size = float(np.sqrt(np.mean(np.square(at.alone))))
     listed = "; ".join(
-        f"{100.0 * (each.share or 0.0):.0f} % of it {OVER[each.over, each.form]}{WAYS[each.direction]}"
-        for each in found
+        f"{percent(each.share)} of it {FORM[each.over, each.form]}{WAYS[each.direction]}" for each in found
     )
     told = listed or "it goes with neither angle, velocity, load nor time"
     return f"a torque of {size:.2g} (root mean square) while the shaft moves: {told}"
@@ -174,8 +174,8 @@ def torque_map(at: Lacking) -> dict[str, Signal] | None:
     if at.torque.size < FEWEST * NODES:
         return None
     still = float(np.ptp(at.angle)) < 1e-9
-    angle = np.zeros(1) if still else np.linspace(*np.quantile(at.angle, [0.02, 0.98]), NODES)
-    velocity = np.linspace(*np.quantile(at.velocity, [0.02, 0.98]), NODES)
+    angle = np.zeros(1) if still else _nodes(at.angle)
+    velocity = _nodes(at.velocity)
     if velocity[-1] - velocity[0] <= 0.0 or (angle.size > 1 and angle[-1] <= angle[0]):
         return None
     weights = _hats(at.angle, angle)[:, :, np.newaxis] * _hats(at.velocity, velocity)[:, np.newaxis, :]
@@ -186,6 +186,12 @@ def torque_map(at: Lacking) -> dict[str, Signal] | None:
     wanted = np.concatenate([at.own, np.zeros(ties.shape[0])])
     torque = np.linalg.lstsq(system, wanted, rcond=None)[0].reshape(angle.size, velocity.size)
     return {"angle": angle, "velocity": velocity, "torque": torque}
+
+
+def _nodes(values: Signal) -> Signal:
+    """Nodes over nearly all of some values, evenly spaced."""
+    low, high = (float(end) for end in np.quantile(values, [0.02, 0.98]))
+    return np.linspace(low, high, NODES)
 
 
 def _hats(values: Signal, nodes: Signal) -> Signal:

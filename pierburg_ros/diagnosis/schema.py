@@ -27,6 +27,8 @@ def _existing_interval(value: Any) -> Any:
 Number = Annotated[float | None, BeforeValidator(_existing)]
 Interval = Annotated[tuple[float, float] | None, BeforeValidator(_existing_interval)]
 Tie = list[str]
+Over = Literal["constant", "velocity", "angle", "load", "time", "rest", "reversal"]
+"""What a missing torque may go with."""
 Direction = Literal["both", "positive", "negative"]
 """Of the shaft: to larger angles, to smaller ones, or both."""
 
@@ -229,7 +231,7 @@ class RuledOut(Part):
 class RemainingShape(Part):
     """What the missing torque goes with."""
 
-    over: Literal["constant", "velocity", "angle", "load", "time", "rest", "reversal"]
+    over: Over
     form: str
     """As constant, direction, linear, square, cube, once_a_turn, twice_a_turn."""
     direction: Direction = "both"

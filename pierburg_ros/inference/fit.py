@@ -66,8 +66,9 @@ class Effort:
 
     @property
     def over(self) -> bool:
-        """Whether nothing larger may be tried: the count is looked at between the steps of a search, so that it ends
-        at the same step with any number of jobs.
+        """Whether nothing larger may be tried.
+
+        The count is looked at between the steps of a search, so that it ends at the same step with any number of jobs.
         """
         if self.stopped_by is None and self.simulations >= self.budget.simulations:
             self.stopped_by = "budget"

@@ -34,8 +34,8 @@ WORTH = 0.9
 """Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
 for another effect to be added. Chosen: a tenth is worth the work; not varied."""
 NEAR = 4.0
-"""Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen: what
-leaves twice the error of the best hardly holds the effect that explains most; not varied."""
+"""Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen:
+what leaves twice the error of the best hardly holds the effect that explains most; not varied."""
 DEEPEST = 3
 """Most effects in an explanation. Given: supports of up to three effects."""
 

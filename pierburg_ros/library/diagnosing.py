@@ -152,7 +152,8 @@ def diagnose(
     model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
     words what is being tried, one call at a time. `jobs` is the number of fits at a time, by default one for each core.
     Takes seconds to a minute: after so many usual efforts (`budget`), or Ctrl-C, the best verdict yet is given and
-    marked as such; None takes what it takes, and "60s" ends by the clock. Where signals are not what they are read as, nothing is concluded, and
+    marked as such; None takes what it takes, and "60s" ends by the clock. Where signals are not what they
+    are read as, nothing is concluded, and
     `document.input_faults` says so; `force` goes on. InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")

@@ -21,8 +21,8 @@ BudgetOption = Annotated[
     str,
     typer.Option(
         metavar="EFFORT",
-        help="What may be simulated, in usual efforts (2, 0.5): the same on every machine. Or at most so many seconds of"
-        " this one (60s). Then the best verdict yet is given.",
+        help="What may be simulated, in usual efforts (2, 0.5): the same on every machine. Or at most so many seconds"
+        " of this one (60s). Then the best verdict yet is given.",
     ),
 ]
 """As text, for `Budget.of`."""

@@ -32,7 +32,7 @@ def exhibits(found: Found, cleaned: Sequence[Cleaned]) -> Exhibits:
 
 
 def switched_off(found: Found) -> list[tuple[Tried, Signal]]:
-    """For each effect of the model that is handed out: what it leaves with this effect switched off, all else unchanged."""
+    """For each effect of the model that is handed out: what it leaves without this effect, all else unchanged."""
     rows, data, own = [], found.data, found.written
     for effect in own.explanation.effects:
         model = without_effects(own.model, [effect])

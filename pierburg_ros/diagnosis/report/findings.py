@@ -39,6 +39,7 @@ from pierburg_ros.diagnosis.schema import (
     Regime,
     Remaining,
     RuledOut,
+    Verdict,
 )
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
 from pierburg_ros.inference.choice import Name, Score, strongest, taken
@@ -54,7 +55,7 @@ TOLD = 30
 
 def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
     """The whole document on recordings that were `cleaned`."""
-    choice, data = found.choice, found.data
+    data = found.data
     actuator, runs = data.actuator, data.runs
     named, parameters_found = effects(found), parameters(found)
     fit, changed, hidden = fit_quality(found), changes(found), not_testable(found)
@@ -95,7 +96,7 @@ def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
     )
 
 
-def verdict(found: Found) -> words.Verdict:
+def verdict(found: Found) -> Verdict:
     """The verdict of the choice; steps of a converter are an effect too."""
     own = found.choice.verdict
     return "missing_physics" if found.step and own in ("consistent", "parameter_drift") else own
@@ -317,8 +318,13 @@ def ruled_out(limit: Limit, found: Found) -> RuledOut:
     """A strength that is excluded, with its unit; where something remains, it counts that."""
     unit = found.data.actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
     side = {"above" if limit.above else "below": limit.value}
-    given = "complete" if adequate(found.choice.chosen) else "residual"
-    return RuledOut(id=limit.effect, parameter=limit.parameter, unit=unit, given=given, **side)
+    return RuledOut(
+        id=limit.effect,
+        parameter=limit.parameter,
+        unit=unit,
+        given="complete" if adequate(found.choice.chosen) else "residual",
+        **side,
+    )
 
 
 def remaining(found: Found) -> Remaining:

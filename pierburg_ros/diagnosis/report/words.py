@@ -131,7 +131,8 @@ def summary(
     helped = f" Part of it is {listed}. {named}" if effects else ""
     maybe = ", ".join(f"{numbers.words(each.id)} ({numbers.percent(each.confidence)})" for each in unsure)
     not_sure = f" Not sure enough to be named: {maybe}." if maybe else ""
-    return f"{begun}An error remains that no effect explains.{helped}{also}{not_sure} What remains is {left.looks_like}. {errors}"
+    rest = f"What remains is {left.looks_like}."
+    return f"{begun}An error remains that no effect explains.{helped}{also}{not_sure} {rest} {errors}"
 
 
 def stopped(found: Found) -> str:
@@ -153,9 +154,8 @@ def divided(found: Found, effects: Sequence[Effect]) -> list[str]:
         return []
     parts = [f"re-estimated parameters take {numbers.percent(shares.re_estimated)}"]
     parts += [f"{numbers.words(each.id)} {numbers.percent(each.share)}" for each in effects if each.share is not None]
-    return [
-        f"Of the squared error of the model as described {', '.join(parts)}, and {numbers.percent(shares.remains)} is left."
-    ]
+    left = numbers.percent(shares.remains)
+    return [f"Of the squared error of the model as described {', '.join(parts)}, and {left} is left."]
 
 
 def handed_out(found: Found) -> str:
