@@ -88,7 +88,7 @@ alone: $(STAMP)
 	cd build/alone && venv/bin/pierburg replay simulated/simulated.mcap --actuator pierburg --output replayed
 	cd build/alone && venv/bin/pierburg diagnose simulated/simulated.mcap --output diagnosed
 
-# Writes docs/benchmarks.md, in about 25 minutes on an otherwise idle machine.
+# Writes docs/developers/measurements.md, in about 25 minutes on an otherwise idle machine.
 benchmarks: $(STAMP)
 	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fuzzy.py

@@ -3,7 +3,7 @@
 A RUN is the output of `pierburg prove` with the kinds beside, remainder and outside. Every effect that was judged
 there, named or doubted, is one case: its evidence, and whether it was concealed. Prints how often those of a
 probability are right, and a logistic regression of the same cases, for `diagnosis/search/belief.py`. Writes the first
-into its section of docs/trust.md; --no-write only prints.
+into its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 import argparse
@@ -68,7 +68,7 @@ def main() -> None:
     text = f"{rows(stated, right)}\n\n{count} Made by `python benchmarks/belief.py`."
     print(text)
     if not given.no_write:
-        write_section("belief", text, "trust.md")
+        write_section("belief", text)
     print("\nconstant, carried, explains, apart:", np.round(regression([case for _, case in found]), 2))
     unseen = []
     for trial, (numbers, _) in found:

@@ -2,7 +2,7 @@
 
 DIAGNOSES has a folder for each recording with its diagnosis.json, a folder TRUTHS one of the same name with its
 truth.json, which lists the concealed effects. A prefix up to the first "t-" does not count. Writes its section of
-docs/trust.md; --no-write only prints.
+docs/developers/measurements.md; --no-write only prints.
 """
 
 import argparse
@@ -40,7 +40,7 @@ def main() -> None:
     text = f"{rows}\n\nn = {len(names)} names. Made by `python benchmarks/calibration.py`."
     print(text)
     if not given.no_write:
-        write_section("calibration", text, "trust.md")
+        write_section("calibration", text)
 
 
 if __name__ == "__main__":

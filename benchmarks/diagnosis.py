@@ -1,4 +1,4 @@
-"""Where the seconds of a diagnosis go: processor time of each stage, for recordings given. Writes docs/benchmarks.md.
+"""Where the seconds of a diagnosis go: processor time of each stage, for recordings given.
 
     python benchmarks/diagnosis.py --output results/profile RECORDING...
 

@@ -1,6 +1,6 @@
 """The export to MuJoCo beside our simulator, effect by effect.
 
-`python benchmarks/export.py [RUNS]` prints the table of docs/export.md.
+`python benchmarks/export.py [RUNS]` prints the table of docs/developers/measurements.md.
 """
 
 import runpy

@@ -1,4 +1,4 @@
-"""Proves the ageing of fleets: a simulated fleet, diagnosed, and drawn courses. Writes docs/fleet.md.
+"""Proves the ageing of fleets: a simulated fleet, diagnosed, and drawn courses.
 
     python benchmarks/fleet.py --output results/fleet_proof --units 40 --recordings 25
 
@@ -53,7 +53,7 @@ def main() -> None:
     )
     truth = json.loads((given.output / "truth.json").read_text())
     text = [diagnosed(found, truth, given.budget), drawn(found, given.courses, *given.drawn)]
-    write_section("proof", "\n".join(text), "fleet.md")
+    write_section("proof", "\n".join(text))
 
 
 def diagnosed(found: Fleet, truth: dict[str, Any], budget: float) -> str:
@@ -61,7 +61,7 @@ def diagnosed(found: Fleet, truth: dict[str, Any], budget: float) -> str:
     by_unit = {name: [each for each in found.ageing if each.course.unit_name == name] for name in truth}
     counts = counted(by_unit, truth)
     seconds = [each.result["processor_time"] for each in found.recordings if not each.problem]
-    return f"""## Proof: a simulated fleet, diagnosed
+    return f"""### Proof: a simulated fleet, diagnosed
 
 {len(truth)} valves, {len(found.recordings)} recordings of 12 s at 250 Hz over a simulated year, made by the second
 formulation of the physics (`benchmarks/fleet_simulation.py`):
@@ -218,7 +218,7 @@ def drawn(found: Fleet, fleets: int, units: int, recordings: int) -> str:
         "| scatter | trends found | of trends believed, false | repairs found | steps where there is none | dates held "
     )
     head += "| rates held | rate error, median |"
-    return f"""## Drawn courses: the statistics alone
+    return f"""### Drawn courses: the statistics alone
 
 No diagnoses: courses of one quantity around 1, {fleets} fleets of {units} units with {recordings} recordings each, a
 quarter of which change by 10 % in a year, a twentieth are set back in between, the rest are steady. Their scatter

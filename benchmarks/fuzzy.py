@@ -1,6 +1,6 @@
 """One fuzzy inference, compiled, from Python, and by scikit-fuzzy.
 
-python benchmarks/fuzzy.py writes its section of docs/benchmarks.md; --no-write only prints.
+python benchmarks/fuzzy.py writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 
 Each effect that is searched for, each drift and nothing at all, in 12 s of steps of duty made by the simulator, is
 diagnosed as it is and with torques, times and, where the angle is measured, angles multiplied. Called again with the
-same output it goes on. `--document` writes the table into docs/reliability.md.
+same output it goes on. `--document` writes the table into docs/developers/measurements.md.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def main() -> None:
     text = "\n".join(table(lines))
     print(text)
     if given.document:
-        write_section("gauges", f"## Units\n\n{HEAD}\n\n{machine()}\n\n{text}\n", "reliability.md")
+        write_section("gauges", f"## Units\n\n{HEAD}\n\n{machine()}\n\n{text}\n")
 
 
 HEAD = """\

@@ -1,6 +1,6 @@
 """The live graph: plant, controller and recorder at 500 Hz, idle and on a machine with all cores busy.
 
-python benchmarks/graph.py --duration 600 writes its section of docs/benchmarks.md; --no-write only prints.
+python benchmarks/graph.py --duration 600 writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 
 from pierburg_ros.cli.demo import compile_kernels
-from pierburg_ros.nodes.core.depth import KEPT
+from pierburg_ros.nodes.core.depth import KEPT_MESSAGES
 from pierburg_ros.processes import own_graph, running
 
 RATE = 500.0  # Hz
@@ -65,8 +65,8 @@ def run(duration: float, busy: int) -> Measured:
         times = np.arange(0.0, duration + 2 * SETTLING, 5.0)
         rows = [f"{t},{STEPS[k % len(STEPS)]}" for k, t in enumerate(times)]
         setpoints.write_text("\n".join(["time,setpoint", *rows]) + "\n")
-        nodes = {"recorder": {"output": recording}, "plant": {"depth": KEPT}, "controller": {}}
-        nodes["controller"] = {"depth": KEPT, "setpoint_file": setpoints}
+        nodes = {"recorder": {"output": recording}, "plant": {"depth": KEPT_MESSAGES}, "controller": {}}
+        nodes["controller"] = {"depth": KEPT_MESSAGES, "setpoint_file": setpoints}
         with load(busy), running(nodes, folder / "log", own_graph()) as processes:
             time.sleep(SETTLING)
             before, start = usage(processes), time.time_ns()

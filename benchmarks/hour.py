@@ -1,6 +1,6 @@
 """A long run at 500 Hz: messages lost by sequence, memory at start, middle and end, ticks skipped.
 
-python benchmarks/hour.py --duration 3600 --case idle writes its section of docs/reliability.md, one for each case;
+python benchmarks/hour.py --duration 3600 --case idle writes its section of the measurements, one for each case;
 --no-write only prints.
 """
 
@@ -17,7 +17,7 @@ from machine import machine, write_section
 from stalls import lost_of_sent
 
 from pierburg_ros.cli.demo import compile_kernels
-from pierburg_ros.nodes.core.depth import KEPT
+from pierburg_ros.nodes.core.depth import KEPT_MESSAGES
 from pierburg_ros.processes import own_graph, running
 
 STEPS = (0.35, 1.2, 0.6, 0.0)  # rad, five seconds each
@@ -31,8 +31,8 @@ def run(duration: float, busy: int) -> dict[str, str]:
         times = [5.0 * count for count in range(int(duration / 5.0) + 10)]
         rows = [f"{time},{STEPS[count % len(STEPS)]}" for count, time in enumerate(times)]
         setpoints.write_text("\n".join(["time,setpoint", *rows]) + "\n")
-        nodes = {"recorder": {"output": recording}, "plant": {"depth": KEPT}, "controller": {}}
-        nodes["controller"] = {"depth": KEPT, "setpoint_file": setpoints}
+        nodes = {"recorder": {"output": recording}, "plant": {"depth": KEPT_MESSAGES}, "controller": {}}
+        nodes["controller"] = {"depth": KEPT_MESSAGES, "setpoint_file": setpoints}
         with load(busy), running(nodes, folder / "log", own_graph()) as processes:
             time.sleep(SETTLING)
             looks, start = [usage(processes)], time.time_ns()
@@ -74,7 +74,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_section(f"hour {options.case}", text, "reliability.md")
+        write_section(f"hour {options.case}", text)
 
 
 if __name__ == "__main__":

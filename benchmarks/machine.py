@@ -1,4 +1,4 @@
-"""What the benchmarks ran on, and where in the pages of docs/ their tables go."""
+"""What the benchmarks ran on, and where in docs/developers/measurements.md their tables go."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import platform
 from pathlib import Path
 
-DOCUMENTS = Path(__file__).parent.parent / "docs"
+MEASUREMENTS = Path(__file__).parent.parent / "docs/developers/measurements.md"
 
 
 def machine() -> str:
@@ -20,16 +20,14 @@ def machine() -> str:
     )
 
 
-def write_section(name: str, text: str, page: str = "benchmarks.md") -> None:
-    """Put `text` between the marks of section `name` in a page of docs/, at its end where there are none yet."""
+def write_section(name: str, text: str) -> None:
+    """Put `text` between the marks of section `name` on the page of measurements, at its end where there are none."""
     begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-    target = DOCUMENTS / page
-    title = page.removesuffix(".md").capitalize()
-    document = target.read_text(encoding="utf-8") if target.exists() else f"# {title}\n"
+    document = MEASUREMENTS.read_text(encoding="utf-8")
     section = f"{begin}\n{text.strip()}\n{end}"
     if begin in document:
         before, rest = document.split(begin)
         document = before + section + rest.split(end, 1)[1]
     else:
         document = f"{document.rstrip()}\n\n{section}\n"
-    target.write_text(document, encoding="utf-8")
+    MEASUREMENTS.write_text(document, encoding="utf-8")

@@ -1,7 +1,7 @@
 """How soon the monitor finds a change, and how often it warns without one: closed loops at 500 Hz, seeded.
 
 `python benchmarks/monitor.py detect 20` and `python benchmarks/monitor.py days 5`; each prints a table for
-docs/monitor.md.
+docs/developers/measurements.md.
 """
 
 from __future__ import annotations

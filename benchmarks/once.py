@@ -1,6 +1,6 @@
 """How often a command sent once arrives, as `ros2 topic pub --once` sends it, with all nodes up.
 
-python benchmarks/once.py --times 100 writes its section of docs/reliability.md; --no-write only prints. A sender is a
+python benchmarks/once.py --times 100 writes its section of the measurements; --no-write only prints. A sender is a
 process of its own that waits for one reader, sends, stays for a while (`STAYS`) and ends.
 """
 
@@ -120,7 +120,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_section("once", text, "reliability.md")
+        write_section("once", text)
 
 
 if __name__ == "__main__":

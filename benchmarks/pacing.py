@@ -1,6 +1,6 @@
 """Ways to pace a node at 500 Hz: an rclpy timer, a loop around spin_once, and a thread beside the executor.
 
-python benchmarks/pacing.py writes its section of docs/benchmarks.md. An echo process answers every tick.
+python benchmarks/pacing.py writes its section of docs/developers/measurements.md. An echo process answers every tick.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python benchmarks/pendulum.py [--shared FOLDER] [--output FOLDER] [--budget SECONDS] [--jobs N]
 
-prints the tables of docs/real.md. What the output folder holds already is not diagnosed again. The recordings are those
+prints what is found. What the output folder holds already is not diagnosed again. The recordings are those
 of `data/ak80` in the shared folder; nothing of them is part of the package.
 """
 

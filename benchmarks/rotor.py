@@ -1,6 +1,6 @@
 """Cogging of a real rotor: each recording diagnosed by itself, and how well the maps over a turn agree.
 
-`python benchmarks/rotor.py [--shared FOLDER] [--budget SECONDS]` prints the tables of docs/real.md. The recordings are
+`python benchmarks/rotor.py [--shared FOLDER] [--budget SECONDS]` prints what is found. The recordings are
 those of `data/odrive` in the shared folder; nothing of them is part of the package.
 """
 

@@ -2,7 +2,7 @@
 
     python benchmarks/servo.py [--output FOLDER] [--budget SECONDS] [--only CASE ...]
 
-prints the table of docs/diagnosis.md. The machine moves by explicit steps of 20 us under a proportional loop at 200 Hz
+prints a table. The machine moves by explicit steps of 20 us under a proportional loop at 200 Hz
 that reads an encoder of 4096 steps. Its description is the shipped `xl330`, off by 10 to 30 % in three numbers. What
 the output folder holds already is not diagnosed again; the recordings there are CSV files for `pierburg diagnose`.
 """

@@ -1,6 +1,6 @@
 """The simulator: beside SciPy's LSODA and MuJoCo, with effects, many parameter sets, memory, first and later start.
 
-python benchmarks/simulator.py writes its section of docs/benchmarks.md; --no-write only prints.
+python benchmarks/simulator.py writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     python benchmarks/spread.py
 
 Processor time of the client, of Dask's scheduler and of its workers for each piece of no work with a result as large as
-a recording's report, with one and two workers, then a model of it. Writes docs/fleet.md.
+a recording's report, with one and two workers, then a model of it. Writes docs/developers/measurements.md.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def main() -> None:
     client, scheduler, worker = (max(cluster[n][place] for n in cluster) for place in range(3))
     rows = [f"| {jobs} processes | {1e3 * local[jobs]:.2f} | - | - |" for jobs in local]
     rows += [f"| {n} Dask workers | {' | '.join(f'{1e3 * each:.2f}' for each in cluster[n])} |" for n in cluster]
-    text = f"""## What spreading costs
+    text = f"""### What spreading costs
 
 Processor time [ms] for each of {PIECES} pieces without any work, whose result has {REPORT // 1000} kB, on
 {machine()}:
@@ -66,7 +66,7 @@ It stops scaling at {5.0 / max(client + kept, scheduler):,.0f} workers for the f
 as fast as they come, and at {30.0 / max(client, scheduler):,.0f} for `prove`, where the scheduler hands out trials as
 fast as they end.
 """
-    write_section("spread", text, "fleet.md")
+    write_section("spread", text)
 
 
 def modelled(fleet_client: float, scheduler: float, worker: float, client: float) -> str:

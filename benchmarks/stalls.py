@@ -1,6 +1,6 @@
 """What the recorder loses when a process gets no processor: each one stopped in turn, and all beside busy ones.
 
-python benchmarks/stalls.py writes its section of docs/reliability.md; --no-write only prints.
+python benchmarks/stalls.py writes its section of docs/developers/measurements.md; --no-write only prints.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from machine import machine, write_section
 from mcap.reader import make_reader
 
 from pierburg_ros.cli.demo import compile_kernels
-from pierburg_ros.nodes.core.depth import KEPT
+from pierburg_ros.nodes.core.depth import KEPT_MESSAGES
 from pierburg_ros.processes import own_graph, running
 
 NODES = ("plant", "controller", "recorder")
@@ -43,8 +43,13 @@ def run(victim: str | None, stops: tuple[float, ...], busy: int, time_kind: str)
     common = {"use_sim_time": is_simulated}
     nodes: dict[str, dict[str, object]] = {
         "recorder": common,
-        "plant": {"depth": KEPT, "simulated_time": is_simulated, "lockstep": time_kind == "lockstep"},
-        "controller": {**common, "depth": KEPT, "setpoint": 0.8, **({"hall_timeout": 0.0} if is_simulated else {})},
+        "plant": {"depth": KEPT_MESSAGES, "simulated_time": is_simulated, "lockstep": time_kind == "lockstep"},
+        "controller": {
+            **common,
+            "depth": KEPT_MESSAGES,
+            "setpoint": 0.8,
+            **({"hall_timeout": 0.0} if is_simulated else {}),
+        },
     }
     with tempfile.TemporaryDirectory() as name:
         recording = Path(name) / "run.mcap"
@@ -106,7 +111,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_section("recording", text, "reliability.md")
+        write_section("recording", text)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
-"""What `pierburg tune --model` gives for plants with an effect, into docs/control.md: `python docs/corrected_loops.py`.
+"""What `pierburg tune --model` gives for plants with an effect: `python docs/corrected_loops.py`.
 
-A few minutes on an idle machine; the numbers are the same each time.
+Writes its part of docs/developers/measurements.md. A few minutes on an idle machine; the numbers are the same each
+time.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pierburg_ros.control import Settings
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.output import write_whole
 
-DOCUMENT = Path(__file__).parent / "control.md"
+DOCUMENT = Path(__file__).parent / "developers/measurements.md"
 BEGIN, END = "<!-- corrected loops: written by docs/corrected_loops.py -->", "<!-- end of corrected loops -->"
 EFFORT = {"generations": 20, "members": 20, "seed": 1}
 MODELS = {

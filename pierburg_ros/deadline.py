@@ -11,7 +11,7 @@ Result = TypeVar("Result")
 
 USUAL_BUDGET = 120.0
 """Time [s] after which the best verdict yet of a diagnosis is given unless told otherwise."""
-SLOWEST = 5.0
+SLOWEST_MACHINE = 5.0
 """How many times longer than on an idle machine a deadline may be put off. Chosen: eight busy processes beside the two
 threads of a diagnosis leave them two fifths of a core, 2.5 times as long for as much work; not varied."""
 
@@ -25,7 +25,7 @@ class Deadline:
 
     Time in which others take the processor counts less, so that a busy machine does not change a verdict: the end has
     come when the process has worked for as much processor time as it takes in so many seconds of an idle machine, or
-    `SLOWEST` times as many have gone by. `pace` is the processor time that it takes in a second there.
+    `SLOWEST_MACHINE` times as many have gone by. `pace` is the processor time that it takes in a second there.
 
     deadline = Deadline(30.0)
     found = deadline.attempt(lambda: long_work(deadline.check), otherwise=nothing)
@@ -49,7 +49,7 @@ class Deadline:
     def spent(self) -> float:
         """Time that has gone by [s]."""
         gone, worked = time.monotonic() - self._begun, time.process_time() - self._worked
-        return max(min(gone, worked / self._pace), gone / SLOWEST)
+        return max(min(gone, worked / self._pace), gone / SLOWEST_MACHINE)
 
     def part(self, share: float) -> Deadline:
         """One that ends when this `share` of what is left of it is over; where that stops, it is noted here too."""

@@ -28,7 +28,7 @@ from pierburg_ros.workers import checked_jobs
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-PATIENCE = 30.0
+SCHEDULER_PATIENCE = 30.0
 """Time [s] that a scheduler has to answer, and to have its first worker."""
 KILLED = "KilledWorker"
 """What Dask calls a piece of work under which several workers have died, one after another."""
@@ -123,8 +123,8 @@ def cluster(scheduler: str) -> Iterator[tuple[Callable[[], Executor], Callable[[
             "A scheduler needs dask, which is not installed. Install it with pip install 'pierburg_ros[fleet]'."
         ) from None
     try:
-        client: Any = Client(scheduler, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
-        client.wait_for_workers(1, timeout=PATIENCE)
+        client: Any = Client(scheduler, timeout=SCHEDULER_PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+        client.wait_for_workers(1, timeout=SCHEDULER_PATIENCE)
     except (OSError, ValueError) as error:
         raise InputError(
             f"{scheduler}: no scheduler with a worker answers ({error or 'time-out'}), expected one as in"

@@ -19,7 +19,7 @@ DOMAINS = range(1, 100)
 """ROS domain ids whose ports stay clear of those that Linux hands out itself."""
 ON_PARENTS_DEATH = 1
 """PR_SET_PDEATHSIG of prctl(2)."""
-PATIENCE = 30.0
+END_PATIENCE = 30.0
 """Time [s] that a node has to end after it was told to."""
 
 
@@ -79,7 +79,7 @@ def end(process: subprocess.Popen[bytes]) -> int:
     if process.poll() is None:
         process.send_signal(signal.SIGINT)
     try:
-        return process.wait(timeout=PATIENCE)
+        return process.wait(timeout=END_PATIENCE)
     except subprocess.TimeoutExpired:
         process.kill()
         return process.wait()

@@ -55,7 +55,7 @@ def test_no_more_is_begun_than_there_are_workers(tmp_path):
 
 def test_a_scheduler_that_is_not_there_is_one_line(monkeypatch):
     pytest.importorskip("distributed", reason="needs dask")
-    monkeypatch.setattr("pierburg_ros.executors.PATIENCE", 0.5)
+    monkeypatch.setattr("pierburg_ros.executors.SCHEDULER_PATIENCE", 0.5)
     with pytest.raises(InputError, match=r"tcp://127.0.0.1:9: no scheduler with a worker answers"):
         list(ended(doubled, [1], scheduler="tcp://127.0.0.1:9"))
 

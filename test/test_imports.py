@@ -35,8 +35,8 @@ ALLOWED["estimation"] = ALLOWED["inference"] | {"inference"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["inference"] | {"inference", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["audit"] = ALLOWED["estimation"] | {"estimation"}
-ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "workers", "deadline", "pages"}
+ALLOWED["audit"] = ALLOWED["plant"] | {"plant", "recording", "inference"}
+ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "estimation", "workers", "deadline", "pages"}
 ALLOWED["proof"] = (
     ALLOWED["diagnosis"]
     | {"diagnosis", "comparison", "control", "closed_loop", "processes"}

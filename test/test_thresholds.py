@@ -1,27 +1,19 @@
-"""Every threshold has a reason for its value, and the page of them is true."""
+"""Every threshold has a reason for its value, in its docstring."""
 
-import importlib.util
 import re
-import sys
-from pathlib import Path
 
 import pytest
+from support.named_numbers import GROUNDS, PACKAGE, named_numbers, numbers_of, parts
 
-ROOT = Path(__file__).parent.parent
-SPEC = importlib.util.spec_from_file_location("thresholds", ROOT / "docs/thresholds.py")
-thresholds = sys.modules["thresholds"] = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(thresholds)
-FOUND = list(thresholds.thresholds())
-
-
-def test_the_page_is_what_the_sources_say():
-    assert (ROOT / "docs/thresholds.md").read_text(encoding="utf-8") == thresholds.page()
+ROOMS = ("inference", "estimation", "audit", "diagnosis", "identification", "fleets")
+"""Folders whose numbers decide what is concluded from recordings."""
+FOUND = [found for room in ROOMS if (PACKAGE / room).is_dir() for found in numbers_of(room)]
 
 
 @pytest.mark.parametrize("found", FOUND, ids=lambda found: f"{found.file}-{found.name}")
 def test_a_threshold_says_what_it_decides_and_why_it_has_its_value(found):
     assert len(found.decides.split()) >= 4
-    assert found.ground in thresholds.GROUNDS, "the docstring names no ground: 'Derived: ...', 'Measured: ...', ..."
+    assert found.ground in GROUNDS, "the docstring names no ground: 'Derived: ...', 'Measured: ...', ..."
     assert len(found.reason.split()) >= 3
 
 
@@ -30,14 +22,14 @@ def test_a_measured_threshold_says_of_how_many_cases(found):
     assert re.search(r"\bn = \d", found.reason)
 
 
-def test_no_number_with_a_name_escapes_the_table():
+def test_no_number_with_a_name_escapes():
     source = 'A = 3\nB = (0.5, -1.0)\nC: float = 2 * A\nD = {"row": 4.0}\nE = (1, "text")\nF = "4"\ng = 5\nH = A\n'
-    assert [name for name, _, _ in thresholds.named_numbers(source)] == ["A", "B", "C", "D"]
+    assert [name for name, _, _ in named_numbers(source)] == ["A", "B", "C", "D"]
 
 
 def test_a_docstring_without_a_ground_is_no_reason():
-    assert thresholds.parts("Share of the error that is kept. It works well.")[1] == ""
-    assert thresholds.parts("Share of the error that is kept. Derived: a half of it.") == (
+    assert parts("Share of the error that is kept. It works well.")[1] == ""
+    assert parts("Share of the error that is kept. Derived: a half of it.") == (
         "Share of the error that is kept.",
         "Derived",
         "a half of it.",

@@ -8,11 +8,12 @@ from pathlib import Path
 FOLDER = Path(__file__).parent
 sys.path[:0] = [str(FOLDER.parents[1]), str(FOLDER.parent)]
 
-from reference import commands, document, parameters, topics  # noqa: E402
+from reference import commands, document, fleet_tables, parameters, topics  # noqa: E402
 
 WRITTEN = {
     "commands.md": commands.page,
     "diagnosis_json.md": document.page,
+    "fleet_tables.md": fleet_tables.page,
     "parameters.md": parameters.page,
     "topics.md": topics.page,
 }

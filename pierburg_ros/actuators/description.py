@@ -47,7 +47,7 @@ MAGNITUDES = {"spring_stiffness", "coulomb_friction", "supply_voltage"}
 """Numbers of which 0 is the least."""
 FULL_TURN = 2.0 * math.pi
 """The zero of a sensor may be off by so much [rad], where nothing says how far the shaft can go."""
-SMALLEST = 1e-18
+SMALLEST_VALUE = 1e-18
 """Least value that counts as above 0: the inertia of a micro-motor's rotor is 1e-14 kg.m^2."""
 _SENSOR: dict[str, set[str]] = {
     "hall_voltage": {"hall_voltage_closed", "hall_voltage_open"},
@@ -133,7 +133,7 @@ class _Description(_Strict):
     def _possible(self) -> None:
         """Refuse ranges that no actuator has: equations divide by some numbers, and others are magnitudes."""
         for name, parameter in self.parameters.items():
-            if name in POSITIVE and not parameter.minimum >= SMALLEST:
+            if name in POSITIVE and not parameter.minimum >= SMALLEST_VALUE:
                 raise ValueError(f"{name} may be {parameter.minimum:g}; expected a minimum above 0")
             if name == "supply_voltage" and not parameter.nominal > 0.0:
                 raise ValueError("supply_voltage is nominally 0; expected the voltage that drives the motor")

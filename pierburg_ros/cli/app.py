@@ -27,7 +27,7 @@ SPREAD = ("--simulation",)
 """Options that take every value up to the next option."""
 COMPLETING = ("_TYPER_COMPLETE_ARGS", "COMP_WORDS")
 """Variables in which a shell says what has been typed when it asks how that could go on."""
-WIDEST = 100
+HELP_WIDTH = 100
 """Columns that help texts fill at most. Chosen: longer lines are hard to read."""
 
 
@@ -153,7 +153,7 @@ COMMANDS = {
 
 def application(called: str | None = None) -> typer.Typer:
     """The command line, with the function of the `called` command and summaries in place of the others."""
-    settings = {"help_option_names": ["-h", "--help"], "max_content_width": WIDEST}
+    settings = {"help_option_names": ["-h", "--help"], "max_content_width": HELP_WIDTH}
     app = typer.Typer(name="pierburg", pretty_exceptions_enable=False, rich_markup_mode=None, context_settings=settings)
     app.callback()(options)
     for name, command in COMMANDS.items():

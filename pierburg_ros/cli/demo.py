@@ -18,7 +18,7 @@ from pierburg_ros.cli.graph_experiment import play
 from pierburg_ros.cli.replay import summary
 from pierburg_ros.cli.run import require_ros
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.nodes.core.depth import KEPT
+from pierburg_ros.nodes.core.depth import KEPT_MESSAGES
 from pierburg_ros.processes import own_graph, running
 
 if TYPE_CHECKING:
@@ -75,8 +75,8 @@ def recorded_run(
     environment = own_graph()
     pace = {"simulated_time": True, "lockstep": True} if simulated_time else {}
     nodes: dict[str, dict[str, object]] = {
-        "plant": {"depth": KEPT, "hall_voltage_noise": NOISE, **pace, **physics},
-        "controller": {"depth": KEPT, "use_sim_time": simulated_time},
+        "plant": {"depth": KEPT_MESSAGES, "hall_voltage_noise": NOISE, **pace, **physics},
+        "controller": {"depth": KEPT_MESSAGES, "use_sim_time": simulated_time},
     }
     if simulated_time:
         nodes["controller"]["hall_timeout"] = 0.0

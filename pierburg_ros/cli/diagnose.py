@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.cli.console.progress import Step, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.cli.options.recordings import (
+    ExactOption,
     ResultsOption,
     SignalsOption,
     TimeOption,
@@ -23,7 +25,6 @@ from pierburg_ros.cli.options.recordings import (
     topics_of,
 )
 from pierburg_ros.cli.options.viewers import RerunOption
-from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
 
@@ -54,9 +55,10 @@ def diagnose(
     signals: SignalsOption = None,
     topic: TopicOption = None,
     time: TimeOption = None,
+    exact: ExactOption = None,
     rerun: RerunOption = None,
     jobs: JobsOption = None,
-    budget: BudgetOption = USUAL_BUDGET,
+    budget: BudgetOption = "1",
     thorough: Annotated[bool, typer.Option("--thorough", help="Try everything, however long it takes.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Conclude although the signals seem at fault.")] = False,
 ) -> str:
@@ -74,7 +76,8 @@ def diagnose(
 
     def taken(paths: Sequence[Path], named: Path | None) -> list[Recording]:
         topics = topics_of(topic)
-        return [read(each, time=time, topics=topics, signals=named, actuator=nominal.actuator) for each in paths]
+        sure, machine = exact or (), nominal.actuator
+        return [read(each, time=time, topics=topics, signals=named, actuator=machine, exact=sure) for each in paths]
 
     measured = taken(recordings, signals)
     try:
@@ -86,7 +89,9 @@ def diagnose(
     # it takes a second to load what draws the results: beside the search, whose compiled code leaves room for it
     Thread(target=lambda: [import_module(each) for each in DRAWING]).start()
     with output_folder(output) as folder:
-        diagnosis = diagnosed_with_progress(measured, nominal, jobs, None if thorough else budget, simulated, force)
+        diagnosis = diagnosed_with_progress(
+            measured, nominal, jobs, Budget.of(None if thorough else budget), simulated, force
+        )
         diagnosis.write_into(folder)
     if rerun:
         diagnosis.write_rerun(rerun)
@@ -102,28 +107,20 @@ def diagnosed_with_progress(
     recordings: Sequence[Recording],
     nominal: Model,
     jobs: int | None = None,
-    budget: float | None = USUAL_BUDGET,
+    budget: Budget = USUAL_BUDGET,
     simulation: Sequence[Recording] = (),
     force: bool = False,
 ) -> Diagnosis:
     """The diagnosis of what `nominal` lacks, with a bar on stderr that names what is being tried."""
-    from pierburg_ros.diagnosis.search.tried import Tried
     from pierburg_ros.library.diagnosing import diagnose as diagnosis_of
 
     with progress() as show:
-
-        def tell(what: str) -> None:
-            if isinstance(what, Tried):
-                show(Step(what.stage, what.done, what.about, what.best, what.left, what))
-            else:
-                show(Step(what))
-
         show(Step("recordings"))
         return diagnosis_of(
             recordings,
             model=nominal,
             simulation=simulation or None,
-            progress=tell,
+            progress=lambda what: show(Step(what)),
             jobs=jobs,
             budget=budget,
             force=force,

@@ -73,7 +73,7 @@ def experiment(
     """Record an excitation recipe, of the simulated actuator or over the ROS graph.
 
     Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence and explains
-    it. It then records only if told: over the graph with --graph, simulated with --model.
+    it. It then records only if asked: over the graph with --graph, simulated with --model.
     """
     if (name is None) == (discriminate is None) or output is None:
         raise InputError(

@@ -13,7 +13,6 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import BudgetOption, JobsOption, SchedulerOption
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
-from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
 
 
@@ -40,7 +39,7 @@ def fleet(
     time: TimeOption = None,
     jobs: JobsOption = None,
     scheduler: SchedulerOption = None,
-    budget: BudgetOption = USUAL_BUDGET,
+    budget: BudgetOption = "1",
 ) -> str:
     """Diagnose many recordings of many actuators; say how each ages, and which to look at first.
 

@@ -42,7 +42,7 @@ def prove(
     ] = False,
     docs: Annotated[Path | None, typer.Option(help="Document whose generated part is replaced.")] = None,
     level: LevelOption = None,
-    budget: BudgetOption = None,
+    budget: BudgetOption = "",
     actuator: ActuatorOption = None,
     model: ModelOption = None,
     signals: SignalsOption = None,

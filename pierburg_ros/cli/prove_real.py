@@ -9,11 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.cli.console.progress import Step, Tell, progress
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import chosen_model
 from pierburg_ros.cli.options.recordings import topics_of
-from pierburg_ros.deadline import USUAL_BUDGET
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.reading import read
 from pierburg_ros.pages.listing import Listing
@@ -62,7 +62,7 @@ def prove(
     most: int | None,
     jobs: int | None,
     scheduler: str | None,
-    budget: float | None,
+    budget: str,
     docs: Path | None,
 ) -> list[dict[str, Any]]:
     """Conduct the trials, write what they came to, and give their results."""
@@ -71,7 +71,8 @@ def prove(
     with progress() as show:
         show(Step("the models of other recordings"))
         reporter = Reporter(show)
-        results = run.prove(output, plan, budget or USUAL_BUDGET, workers=jobs, scheduler=scheduler, report=reporter)
+        efforts = Budget.of(budget or USUAL_BUDGET).efforts
+        results = run.prove(output, plan, efforts, workers=jobs, scheduler=scheduler, report=reporter)
     if not results:
         raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
     done = Run(results, plan)

@@ -20,7 +20,7 @@ from pierburg_ros.control import Settings
 from pierburg_ros.plant import Model
 from pierburg_ros.workers import workers
 
-SEEDS = range(100, 110)  # none of those that tuning saw
+NOISE_SEEDS = range(100, 110)  # none of those that tuning saw
 PLACE = {field.name: place for place, field in enumerate(fields(Metrics))}
 
 Table = NDArray[np.float64]
@@ -66,7 +66,7 @@ def judge(
     responses = {}
     with workers(jobs) as pool:
         for name, model in plants.items():
-            responses[name] = np.array(list(pool.map(partial(respond, design, settings, model), SEEDS)))
+            responses[name] = np.array(list(pool.map(partial(respond, design, settings, model), NOISE_SEEDS)))
             on_plant()
     return Judgement(design.name, settings, plants, responses)
 

@@ -22,14 +22,14 @@ from pierburg_ros.plant import Model
 NOISE = 0.003  # of the Hall voltage, RMS [V]
 RATE = 500.0  # [Hz]
 STATED = (NOMINAL, HOT, STICKY)  # the plants for which the goals are stated: they count most
-OTHERS = 0.06  # weight of the mean of the other plants
+OTHERS_WEIGHT = 0.06  # weight of the mean of the other plants
 WORST = 0.01  # weight of the worst plant of all
-MARGIN = 0.85  # within this share of its limit a quantity costs little more
+GOAL_MARGIN = 0.85  # within this share of its limit a quantity costs little more
 HOPELESS = 10.0  # times its limit or more: counts as this
 BEYOND = 0.02  # what being better still is worth, beside reaching the limit
-SEEDS = {True: (0, 1, 2), False: (3,)}  # of the noise, for the plants with stated goals and the others
-SHORT = Course(approach=0.3, hold=0.35, watch=1.2)  # enough to rank candidates
-FINALISTS = 6  # are judged once more on the whole course, which sees slow hunting
+TUNING_SEEDS = {True: (0, 1, 2), False: (3,)}  # of the noise, for the plants with stated goals and the others
+SHORT_COURSE = Course(approach=0.3, hold=0.35, watch=1.2)  # enough to rank candidates
+FINAL_CANDIDATES = 6  # are judged once more on the whole course, which sees slow hunting
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Task:
 
     def cost(self, settings: Settings, course: Course, at_most: float = math.inf) -> float:
         """How far the responses fall short of the goal; counting stops above `at_most`."""
-        responses = [self.response(NOMINAL, settings, course, seed) for seed in SEEDS[True]]
+        responses = [self.response(NOMINAL, settings, course, seed) for seed in TUNING_SEEDS[True]]
         bounds = settling_bounds(self.plants[NOMINAL], RATE)
         total = worst = shortfall(responses, self.goal.nominal_limits(bounds)) / len(self.stated)
         settling = np.maximum(np.median(responses, axis=0)[:, 0], bounds)
@@ -55,9 +55,9 @@ class Task:
             if total > at_most or total == math.inf:
                 break
             stated = name in self.stated
-            responses = [self.response(name, settings, course, seed) for seed in SEEDS[stated]]
+            responses = [self.response(name, settings, course, seed) for seed in TUNING_SEEDS[stated]]
             missed = shortfall(responses, other_limits)
-            total += missed / len(self.stated) if stated else OTHERS * missed / len(rest)
+            total += missed / len(self.stated) if stated else OTHERS_WEIGHT * missed / len(rest)
             worst = max(worst, missed)
         return total + WORST * worst
 
@@ -74,7 +74,7 @@ class Task:
 def shortfall(responses: Sequence[Table], limits: Table) -> float:
     """Logarithmic excess over the limits, summed over quantities, averaged over responses and steps."""
     ratios = np.minimum(np.array(responses) / limits, HOPELESS)
-    excess = np.log(np.maximum(ratios / MARGIN, 1.0)) + BEYOND * ratios
+    excess = np.log(np.maximum(ratios / GOAL_MARGIN, 1.0)) + BEYOND * ratios
     return float(excess.sum(axis=-1).mean())
 
 
@@ -90,8 +90,8 @@ def tune(
     """The best settings found or `known`, `jobs` candidates tried at a time; the same seed finds the same."""
 
     def cost(point: Signal, at_most: float) -> float:
-        return task.cost(task.design.settings(point), SHORT, at_most)
+        return task.cost(task.design.settings(point), SHORT_COURSE, at_most)
 
     found = search(cost, task.design.bounds, generations, members, seed, on_generation, jobs)
-    finalists = [*known, *(task.design.settings(point) for point in found.points[:FINALISTS])]
+    finalists = [*known, *(task.design.settings(point) for point in found.points[:FINAL_CANDIDATES])]
     return min(finalists, key=lambda settings: task.cost(settings, Course()))

@@ -2,7 +2,8 @@
 
 The node and the simulation call this same code. `settings` is the record of `Settings`, `state` that of
 `new_state`; everything the law remembers between samples is in the latter. Whatever finite numbers come in,
-the state stays finite: `LARGEST` and `LONGEST` bound what enters it, far beyond what a sensor or a clock gives.
+the state stays finite: `LARGEST_ERROR` and `LONGEST_SAMPLING` bound what enters it, far beyond what a sensor or a clock
+gives.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from pierburg_ros.control import predictor
 from pierburg_ros.control.fuzzy import duty_of, pi_output_for
 from pierburg_ros.kernel import kernel
 
-SHORTEST = 1e-6  # samples closer than this [s] leave derivative and integrator as they are
-LARGEST = 1e6
+SHORTEST_SAMPLING = 1e-6  # samples closer than this [s] leave derivative and integrator as they are
+LARGEST_ERROR = 1e6
 """Errors [V] beyond this count as this: 10,000 times the widest range of a sensor that can be set, and small
-enough that its quotient by `SHORTEST` and its product with every gain are finite."""
-LONGEST = 1e3
+enough that its quotient by `SHORTEST_SAMPLING` and its product with every gain are finite."""
+LONGEST_SAMPLING = 1e3
 """Longer times between two samples [s] count as this: a quarter of an hour is no sampling."""
 STATE = [
     ("started", np.bool_),  # a first sample has been seen
@@ -63,11 +64,11 @@ def step(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: fl
 @kernel
 def follow(settings: Any, state: Any, setpoint: float, hall_voltage: float, dt: float) -> None:
     """Bring error, derivative of the error and PI output up to a sample."""
-    dt = min(dt, LONGEST)
-    if state.started and dt >= SHORTEST:
+    dt = min(dt, LONGEST_SAMPLING)
+    if state.started and dt >= SHORTEST_SAMPLING:
         hall_voltage = predictor.predicted(settings, state, hall_voltage, state.duty, dt)
-    error = min(max(voltage(settings, setpoint) - hall_voltage, -LARGEST), LARGEST)
-    if state.started and dt >= SHORTEST:
+    error = min(max(voltage(settings, setpoint) - hall_voltage, -LARGEST_ERROR), LARGEST_ERROR)
+    if state.started and dt >= SHORTEST_SAMPLING:
         slope = (error - state.error) / dt
         state.derivative += (slope - state.derivative) * dt / (dt + settings.derivative_time_constant)
         integrate(settings, state, error, dt)
@@ -117,7 +118,7 @@ def give(settings: Any, state: Any, duty: float, dt: float) -> float:
     if not state.started:
         state.transfer = state.duty - duty
         state.started = True
-    elif dt >= SHORTEST:
+    elif dt >= SHORTEST_SAMPLING:
         state.transfer *= math.exp(-dt / settings.transfer_time)
     limited: float = min(max(duty + state.transfer, settings.duty_minimum), settings.duty_maximum)
     at_limit = limited == settings.duty_minimum or limited == settings.duty_maximum

@@ -24,7 +24,7 @@ import numpy as np
 
 from pierburg_ros.kernel import kernel
 
-LARGEST = 1e6
+LARGEST_VOLTAGE = 1e6
 """Voltages [V] beyond this count as this, as in the control law."""
 DRIFTING = 0.1
 """Time constant [s] with which a drift of the model is followed. Chosen: three times the longest delay of the practice
@@ -54,7 +54,7 @@ def predicted(settings: Any, state: Any, hall_voltage: float, duty: float, dt: f
     """Hall voltage [V] that the sensor will come to show, from the one it shows [V] and the last duty given [1]."""
     if settings.predictor_delay == 0.0 and settings.predictor_lag == 0.0:
         return hall_voltage
-    hall_voltage = min(max(hall_voltage, -LARGEST), LARGEST)
+    hall_voltage = min(max(hall_voltage, -LARGEST_VOLTAGE), LARGEST_VOLTAGE)
     move(settings, state, hall_voltage + state.ahead, duty, dt)
     samples = int(min(settings.predictor_delay / dt + 0.5, LONGEST_DELAY))
     under_way = 0.0

@@ -6,7 +6,7 @@ import math
 
 from pierburg_ros.errors import InputError
 
-TOLERANCE = 0.002  # beyond a stop by up to this [rad] a setpoint is clamped, further it is refused
+STOP_TOLERANCE = 0.002  # beyond a stop by up to this [rad] a setpoint is clamped, further it is refused
 
 
 class Setpoints:
@@ -26,7 +26,7 @@ class Setpoints:
         """The setpoint [rad] between the stops that `setpoint` stands for; InputError if there is none."""
         if not math.isfinite(setpoint):
             raise InputError(f"Setpoint {setpoint} is not finite; give an angle in rad.")
-        if not self.lower_stop - TOLERANCE <= setpoint <= self.upper_stop + TOLERANCE:
+        if not self.lower_stop - STOP_TOLERANCE <= setpoint <= self.upper_stop + STOP_TOLERANCE:
             raise InputError(
                 f"Setpoint {setpoint:g} rad is beyond the stops; "
                 f"give an angle from {self.lower_stop:g} to {self.upper_stop:.4f} rad."

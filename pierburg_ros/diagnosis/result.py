@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Diagnosis, Status
-from pierburg_ros.estimation.run import Run
+from pierburg_ros.inference.data import Run
 from pierburg_ros.plant import Model
 
 
@@ -48,10 +48,19 @@ class Tried:
 
 
 @dataclass(frozen=True)
-class Characteristic:
-    """A law inside the actuator: `curves` (x, y) by model, and `points` (x, y) of the recordings around the final.
+class Points:
+    """Means of what recordings show along `x`, and `error`, the half of their 95 % intervals, each shape (points,)."""
 
-    A point is the final curve plus the residual of the recording there (a partial residual).
+    x: Signal
+    y: Signal
+    error: Signal
+
+
+@dataclass(frozen=True)
+class Characteristic:
+    """A law inside the actuator: `curves` (x, y) by model, and `points` of the recordings around the final.
+
+    A point is the mean of the final curve plus the residual of the balance there (a partial residual).
     """
 
     id: str
@@ -59,7 +68,7 @@ class Characteristic:
     x: str
     y: str
     curves: dict[str, tuple[Signal, Signal]]
-    points: tuple[Signal, Signal] | None = None
+    points: Points | None = None
 
 
 @dataclass(frozen=True)
@@ -75,7 +84,7 @@ class Exhibits:
 class Result:
     """The document, the model with the named physics, the runs, and signals of one run.
 
-    `signals` are those of the longest run of the first recording by name, each (samples,): time [s], duty, measured.
+    `signals` are those of the first recording by name, each (samples,): time [s], duty, measured.
     The simulations by the nominal, the recalibrated and the final model are in the measured unit.
     """
 

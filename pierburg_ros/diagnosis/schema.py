@@ -1,4 +1,4 @@
-"""diagnosis.json, schema 2 (section 5 of docs/contract.md): every field with its unit; null where there is none."""
+"""diagnosis.json, schema 3 (section 5 of docs/contract.md): every field with its unit; null where there is none."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ def _existing_interval(value: Any) -> Any:
 Number = Annotated[float | None, BeforeValidator(_existing)]
 Interval = Annotated[tuple[float, float] | None, BeforeValidator(_existing_interval)]
 Tie = list[str]
+Over = Literal["constant", "velocity", "angle", "load", "time", "rest", "reversal"]
+"""What a missing torque may go with."""
+Direction = Literal["both", "positive", "negative"]
+"""Of the shaft: to larger angles, to smaller ones, or both."""
 
 
 class Part(BaseModel):
@@ -47,17 +51,10 @@ class Estimate(Part):
     """95 % confidence interval, in `unit`."""
     identifiable: bool
     """Whether these recordings determine the value."""
-
-
-class Evidence(Part):
-    """What makes an effect more or less probable beside a remainder (`search/belief.py`)."""
-
-    carried: Number
-    """Share, 0 to 1, of the evidence against the model without any effect."""
-    explains: Number
-    """Share, 0 to 1, in the mean square of its own signal and the remainder together."""
-    apart: Number
-    """By how much the best replacement falls short of it, as a share of its gain; 0 if that gains as much."""
+    at_bound: bool = False
+    """Whether the value is where a search ends: the true one may lie beyond."""
+    tied_with: list[str] = []
+    """Other quantities of the same model that may move with it, so that the recordings stay as they are."""
 
 
 class Effect(Part):
@@ -72,26 +69,24 @@ class Effect(Part):
     indistinguishable_from: list[Tie] = []
     """Alternatives that fit as well, each a list of effect ids and parameter names."""
     share: Number = None
-    """Of the mismatch, what it explains beside the others, 0 to 1; null where there is no mismatch."""
+    """Of the mismatch of the model as described, what it explains beside the others, 0 to 1; null without mismatch."""
     share_alone: Number = None
-    """Of the mismatch, what it explains without the others, 0 to 1."""
-    evidence: Evidence | None = None
-    """Only beside a remainder of a single recording."""
+    """Of the mismatch of the model as described, what it explains without the other effects, 0 to 1."""
     explanation: str
     """Why, in words, with numbers."""
 
 
 class Doubted(Part):
-    """An effect that gains something beside a remainder, but is not probable enough to be named."""
+    """An effect that gains something, but is not probable enough to be named."""
 
     id: str
     """Name in the catalogue."""
     confidence: Number
-    """0 to 1: how probable the effect is; named ones have at least 0.5."""
-    indistinguishable_from: list[Tie] = []
-    """Alternatives that fit as well, each a list of effect ids and parameter names."""
-    evidence: Evidence | None = None
-    """None for a play, which is read from reversals and has no replacement."""
+    """0 to 1: how probable the effect is; named ones have more."""
+    share: Number = None
+    """Of the mismatch of the model as described, what it explains beside re-estimated parameters, 0 to 1."""
+    parameters: dict[str, Estimate] = {}
+    """Its values there, by name in the catalogue."""
     explanation: str
     """Why, in words, with numbers."""
 
@@ -112,6 +107,12 @@ class BaseParameter(Part):
     """Whether the chosen explanation changes it."""
     indistinguishable_from: list[Tie] = []
     """Alternatives that fit as well, each a list of effect ids and parameter names."""
+    tied_with: list[str] = []
+    """Other parameters of the same model that may move with it, so that the recordings stay as they are."""
+    held: str | None = None
+    """Why it was not fitted, in words; null where it was."""
+    at_bound: bool = False
+    """Whether the value is where a search ends: the true one may lie beyond."""
 
 
 class Change(Part):
@@ -139,6 +140,8 @@ class Location(Part):
     """Of the residual energy of the recalibrated nominal model, 0 to 1."""
     regime: str
     """What the shaft does there."""
+    direction: Direction = "both"
+    """In which direction the shaft moves there."""
 
 
 class Regime(Part):
@@ -194,7 +197,9 @@ class Candidate(Part):
     id: str
     """Effect ids and parameter names, joined by +; "nominal" for none."""
     validation_rmse: Number
-    """Error on unseen samples, measured unit."""
+    """Error on samples that neither fit nor choice used, measured unit."""
+    heldout_rmse: Number
+    """Error on samples that no fit used and by which the model that is handed out is chosen, measured unit."""
     evidence: Number
     """What it gains in chi2 over the nominal model with its parameters re-estimated, in effective samples."""
     status: Status
@@ -219,6 +224,20 @@ class RuledOut(Part):
     above: Number = None
     """The value is more than this, in `unit`: of what acts the more the smaller it is, as a stiffness."""
     unit: str
+    given: Literal["complete", "residual"] = "complete"
+    """Whether the model is taken to be complete, or the limit counts an error that remains."""
+
+
+class RemainingShape(Part):
+    """What the missing torque goes with."""
+
+    over: Over
+    form: str
+    """As constant, direction, linear, square, cube, once_a_turn, twice_a_turn."""
+    direction: Direction = "both"
+    """In which direction of the shaft it is larger."""
+    share: Number
+    """Of the missing torque, mean square, 0 to 1."""
 
 
 class Remaining(Part):
@@ -227,7 +246,9 @@ class Remaining(Part):
     share: Number
     """Of the mismatch, 0 to 1; null where there is no mismatch."""
     looks_like: str
-    """Its size, how long it lasts, and what it goes with, in words."""
+    """Its size and what it goes with, in words."""
+    shapes: list[RemainingShape] = []
+    """The largest share first."""
 
 
 class Excluded(Part):
@@ -271,6 +292,16 @@ class ResidualTorque(Part):
     """What it looks like over angle, velocity and time, in words."""
     over_time: TorqueOverTime | None = None
     """What the shape over angle and velocity leaves aside: the missing torque over time."""
+
+
+class Effort(Part):
+    """How much was simulated."""
+
+    simulations: int
+    budget: Number = 1.0
+    """What was allowed, in usual efforts; null for no limit."""
+    stopped_by: Literal["budget", "interrupt", "clock"] | None = None
+    """What ended the search before all was tried; after the clock or an interrupt another run may find more."""
 
 
 class DataQuality(Part):
@@ -336,7 +367,7 @@ class InputFault(Part):
 class Diagnosis(Part):
     """The whole document."""
 
-    schema_number: Literal[2] = Field(2, alias="schema")
+    schema_number: Literal[3] = Field(3, alias="schema")
     """Version of this layout; the key is `schema`."""
     recordings: list[str]
     """Names of the recordings."""
@@ -350,11 +381,14 @@ class Diagnosis(Part):
     verdict: Verdict
     summary: str
     """One paragraph that a technician can read."""
-    stopped: bool = False
-    """Whether time was over, or Ctrl-C came, before all was tried: then this is the best verdict yet."""
+    model_of: Literal["description", "re_estimated", "effects", "effects_and_shape"] = "description"
+    """Which model `model.yaml` is: the one that predicts samples best that no fit used."""
+    effort: Effort = Effort(simulations=0)
     effects: list[Effect] = []
     doubted: list[Doubted] = []
-    """Only with the verdict "unexplained", from a single recording."""
+    """The most probable first."""
+    re_estimated_share: Number = None
+    """Of the mismatch of the model as described, what re-estimated parameters explain, 0 to 1."""
     parameters: dict[str, BaseParameter] = {}
     """Those of the actuator, and of effects that it always has as `effect.parameter`."""
     changes: list[Change] = []

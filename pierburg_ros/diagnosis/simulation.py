@@ -15,21 +15,17 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis, Simulated, Simulation
-from pierburg_ros.diagnosis.search.beam import Beam
-from pierburg_ros.diagnosis.search.found import Found, search
-from pierburg_ros.diagnosis.search.tried import Progress, staged
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
-from pierburg_ros.estimation.data import Data, data_of, in_parts, rms
-from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.choice import Choice
+from pierburg_ros.inference.evidence import rms
+from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.infer import infer
+from pierburg_ros.inference.search import Progress
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import encoded
 from pierburg_ros.recording import Recording
-
-BEAM = Beam(width=1, depth=2, ahead=8, budget=100)
-"""How far the search for effects in a simulator's recordings goes. Work: a simulator has no more than a few of them,
-and those that are not found count as no evidence; not varied."""
+from pierburg_ros.recording.noise import noise_of
 
 
 @dataclass(frozen=True)
@@ -47,10 +43,6 @@ class Reproduction:
     described_rmse: float
     left: float
     travel: float
-
-    def kept_apart(self, data: Data) -> Data:
-        """Real recordings in which the difference between the two simulators is no evidence."""
-        return data.kept_apart(self.left)
 
     def told(self, result: Result) -> Result:
         """A diagnosis against `model` that says so, with its model in the terms of the description."""
@@ -101,15 +93,18 @@ def reproduction(
     InputError if they cannot be used.
     """
     recordings = [as_measured(recording, described) for recording in simulation]
-    own = in_parts(data_of(recordings, described))
-    noise = float(np.hypot(own.noise, data_of(real, described).noise))
-    data = replace(own, noise=noise, step=0.0)
-    found = search(data, described, staged(progress, "your simulator"), jobs, BEAM)
-    fit = lasting(found)
-    actuator = with_nominal(described.actuator, fit)
-    rmse, before = (rms(data.residual(model)) * noise for model in (fit.model, described))
+    progress("your simulator")
+    noise = float(np.median([noise_of(each.time, each.measured) for each in real]))
+
+    def tell(what: str) -> None:
+        progress(f"your simulator: {what}")
+
+    choice = infer(recordings, described, tell, jobs, unlike=noise).choice
+    fit = lasting(choice)
+    actuator, data = with_nominal(described.actuator, fit), fit.fitter.data
+    rmse, before = (rms(each.residual) * data.noise for each in (fit, choice.described))
     travel = max(float(np.ptp(run.measured)) for run in data.runs)
-    left = float(np.sqrt(max(rmse**2 - own.sensor_noise**2, 0.0)))
+    left = float(np.sqrt(max(rmse**2 - data.noise**2, 0.0)))
     names = tuple(dict.fromkeys(recording.name for recording in recordings))
     return Reproduction(names, described, Model.nominal(actuator), before, left, travel)
 
@@ -127,15 +122,10 @@ def as_measured(recording: Recording, described: Model) -> Recording:
     )
 
 
-def lasting(found: Found) -> Fit:
-    """The chosen explanation or, if it depends on a time in one recording, the best one that does not."""
-    if _lasts(found.chosen):
-        return found.final
-
-    def cost(fit: Fit) -> float:
-        return fit.misfit / fit.repetition + SIGNIFICANT * fit.explanation.size
-
-    return min((fit for fit in found.fits.values() if _lasts(fit)), key=cost)
+def lasting(choice: Choice) -> Fit:
+    """The model that predicts best or, if it depends on a time in one recording, the best one that does not."""
+    able = [fit for fit in (choice.predictor, *choice.fits) if _lasts(fit)]
+    return able[0] if able[0] is choice.predictor else min(able, key=lambda fit: fit.chi2)
 
 
 def _lasts(fit: Fit) -> bool:

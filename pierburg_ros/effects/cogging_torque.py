@@ -28,7 +28,7 @@ at no-load speed the simulator has eight steps for each."""
 PLAUSIBLE = 12
 """Most periods per motor revolution that are plausible. Chosen: the least common multiple of the poles and slots of a
 small brush motor is rarely more; what a recording shows clearly is looked at beyond it."""
-MOST = 128
+MOST_PERIODS = 128
 """Most periods in a turn of the motor that a balance looks at. Chosen: those of a large motor without gear."""
 COMMON = (2.0, 3.0, 6.0)
 """Periods per motor revolution of common small motors: looked at whatever the recording shows."""
@@ -54,7 +54,7 @@ def _starts(missing: Missing) -> Sequence[Start]:
 
 def _every_order(reach: Reach) -> Sequence[Start]:
     """Every plausible number of periods in a turn, each at two phases in quadrature."""
-    orders = range(1, MOST + 1)
+    orders = range(1, MOST_PERIODS + 1)
     return [
         {"amplitude": 0.0075, "periods_per_motor_revolution": float(order), "phase": phase}
         for order in orders

@@ -10,7 +10,7 @@ from pierburg_ros.intake.bounds import LARGEST
 HEAD = """\
 # The effects
 
-Written by `python -m pierburg_ros.effects.page > docs/effects.md`; edit the declarations, not this page.
+Written by `python -m pierburg_ros.effects.page > docs/reference/effects.md`; edit the declarations, not this page.
 
 What the simulator can add to the paper's plant and the diagnosis can name, in the order of the signal path. An effect
 is absent, bit for bit, while its strength (bold) is 0; a stiffness of 0 is rigid. Any of them may act together. The

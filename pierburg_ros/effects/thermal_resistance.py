@@ -11,7 +11,7 @@ from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Va
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
-SHORT = 1e-3
+SHORT_HEATING = 1e-3
 """Below this share of its time constant four terms of the power series are the exponential to rounding."""
 COPPER = 0.0039
 """Temperature coefficient of the resistance of copper [1/K], from 20 degC (IEC 60028)."""
@@ -101,6 +101,6 @@ def heated(p, rise, power, falling, duration):
     if p.heat_capacity == 0.0:
         return final
     share = duration * leaving / p.heat_capacity
-    if share < SHORT:
+    if share < SHORT_HEATING:
         return rise + (final - rise) * share * (1.0 - 0.5 * share * (1.0 - share / 3.0 * (1.0 - 0.25 * share)))
     return final + (rise - final) * math.exp(-share)

@@ -8,7 +8,7 @@ from pierburg_ros.export.contents import Contents
 
 INPUTS = {"voltage": "duty", "current": "current in A", "torque": "recorded torque"}
 """What drives an actuator, in words."""
-ENDLESS = 1e16
+NO_LIMIT = 1e16
 """What formats take for no limit."""
 
 
@@ -36,13 +36,13 @@ def braking(contents: Contents) -> float:
 
 def largest_torque(contents: Contents) -> float:
     """Torque at duty 1 and standstill [N.m]; no limit where current or torque are driven."""
-    return torque_per_input(contents) if contents.model.actuator.drive == "voltage" else ENDLESS
+    return torque_per_input(contents) if contents.model.actuator.drive == "voltage" else NO_LIMIT
 
 
 def largest_speed(contents: Contents) -> float:
     """Velocity at duty 1 without load or friction [rad/s]; no limit where current or torque are driven."""
     if contents.model.actuator.drive != "voltage":
-        return ENDLESS
+        return NO_LIMIT
     return contents.base("supply_voltage") / motor_constant(contents)
 
 

@@ -12,18 +12,18 @@ import numpy as np
 
 from pierburg_ros.effects import COPPER
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import ENDLESS, INPUTS, braking, motor_constant, torque_per_input
+from pierburg_ros.export.motor import INPUTS, NO_LIMIT, braking, motor_constant, torque_per_input
 from pierburg_ros.export.remarks import remarks
-from pierburg_ros.export.shaft import GRAVITY, shaft
+from pierburg_ros.export.shaft import STANDARD_GRAVITY, shaft
 from pierburg_ros.export.xml import Element, child, document, numbers
 
 TIMESTEP = 1e-4
 """Longest step [s]. Measured: with it the nominal valve differs from ours by 0.03 mrad RMS, at 1 ms by 0.5
 (`docs/export.md`)."""
-RESOLVED = 4.0
+CONTACT_STEPS = 4.0
 """Steps in the shortest time constant of a contact. Derived: MuJoCo integrates bristles explicitly, which is stable
 above 1; at 4 the step of 0.1 ms gave 0.15 mrad RMS against our own bristles, at 1.5 no less."""
-SOFT = 0.01
+SOFT_IMPEDANCE = 0.01
 """Impedance of elastic stops. Derived: MuJoCo lets the inertia in contact grow by 1 / (1 - impedance), 1 % here."""
 RIGID = "0.9999 0.9999 0.001"
 """Impedance of rigid stops and dry friction: the largest that MuJoCo takes."""
@@ -34,7 +34,7 @@ def mujoco(contents: Contents) -> str:
     step = timestep(contents)
     root = Element("mujoco", {"model": contents.model.actuator.name})
     child(root, "compiler", angle="radian", autolimits="true")
-    gravity = numbers(0, 0, -GRAVITY) if contents.base("gravity_torque") else "0 0 0"
+    gravity = numbers(0, 0, -STANDARD_GRAVITY) if contents.base("gravity_torque") else "0 0 0"
     child(root, "option", timestep=step, integrator="discrete", gravity=gravity)
     body = child(child(root, "worldbody"), "body", name="shaft")
     joint(contents, body, step)
@@ -64,9 +64,9 @@ def timestep(contents: Contents) -> float:
     steps = [TIMESTEP]
     stiffness, inductance = contents.quantity("bristle_stiffness"), contents.quantity("winding_inductance")
     if stiffness > 0.0:
-        steps.append(total_damping(contents) / (RESOLVED * stiffness))
+        steps.append(total_damping(contents) / (CONTACT_STEPS * stiffness))
     if inductance > 0.0:
-        steps.append(math.sqrt(inductance * contents.base("total_inertia")) / motor_constant(contents) / RESOLVED)
+        steps.append(math.sqrt(inductance * contents.base("total_inertia")) / motor_constant(contents) / CONTACT_STEPS)
     return float(f"{min(steps):.1g}")
 
 
@@ -83,7 +83,7 @@ def joint(contents: Contents, body: Element, step: float) -> None:
     hinge = child(body, "joint", name="shaft", type=kind, axis=shaft(contents).axis)
     hinge.attrib.update(spring(contents))
     if actuator.has_stops:
-        hinge.set("range", numbers(max(actuator.lower_stop, -ENDLESS), min(actuator.upper_stop, ENDLESS)))
+        hinge.set("range", numbers(max(actuator.lower_stop, -NO_LIMIT), min(actuator.upper_stop, NO_LIMIT)))
         hinge.attrib.update(stops(contents, step))
     damping = contents.quantity("viscous_damping")
     if damping > 0.0:
@@ -119,9 +119,9 @@ def stops(contents: Contents, step: float) -> dict[str, str]:
     contents.notes.append("The elastic stops hold for this integrator and this step.")
     electric = 0.0 if contents.quantity("winding_inductance") else braking(contents)
     implicit = step * (electric + contents.quantity("viscous_damping"))
-    per_torque = (1.0 - SOFT) / (contents.base("total_inertia") + implicit)
+    per_torque = (1.0 - SOFT_IMPEDANCE) / (contents.base("total_inertia") + implicit)
     reference = numbers(-stiffness * per_torque, -damping * per_torque)
-    return {"solreflimit": reference, "solimplimit": numbers(SOFT, SOFT, 0.001)}
+    return {"solreflimit": reference, "solimplimit": numbers(SOFT_IMPEDANCE, SOFT_IMPEDANCE, 0.001)}
 
 
 def drive(contents: Contents, actuators: Element, step: float) -> None:
@@ -168,8 +168,8 @@ def bristles(contents: Contents, gear: float, step: float) -> str:
     sliding = contents.base("coulomb_friction")
     stiffness, damping = contents.quantity("bristle_stiffness"), contents.quantity("bristle_damping")
     if stiffness == 0.0:
-        taken_up = total_damping(contents) + contents.base("total_inertia") / (RESOLVED * step)
-        stiffness = taken_up / (RESOLVED * step)
+        taken_up = total_damping(contents) + contents.base("total_inertia") / (CONTACT_STEPS * step)
+        stiffness = taken_up / (CONTACT_STEPS * step)
         given = sliding / stiffness
         contents.notes.append(f"Friction is rigid in the model, here it gives {given:.2g} rad before it slides.")
     static = max(contents.quantity("breakaway_friction"), sliding)

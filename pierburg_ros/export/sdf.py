@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import ENDLESS, braking, largest_speed, largest_torque
+from pierburg_ros.export.motor import NO_LIMIT, braking, largest_speed, largest_torque
 from pierburg_ros.export.remarks import remarks
 from pierburg_ros.export.shaft import shaft
 from pierburg_ros.export.urdf import KINDS, torque_driven
@@ -38,7 +38,7 @@ def sdf(contents: Contents) -> str:
 def limits(contents: Contents, limit: Element) -> None:
     """Where the joint ends, how strong and how fast its motor is, and how the stops give."""
     actuator = contents.model.actuator
-    lower, upper = max(actuator.lower_stop, -ENDLESS), min(actuator.upper_stop, ENDLESS)
+    lower, upper = max(actuator.lower_stop, -NO_LIMIT), min(actuator.upper_stop, NO_LIMIT)
     motor = {"effort": largest_torque(contents), "velocity": largest_speed(contents)}
     valued(limit, {"lower": lower, "upper": upper, **motor})
     if stiffness := contents.quantity("contact_stiffness"):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from pierburg_ros.export.contents import Contents
 
-GRAVITY = 9.81
+STANDARD_GRAVITY = 9.81
 """Acceleration [m/s^2] from which a pendulum's mass and lever are made. Given: standard gravity, rounded."""
 MASS = 0.02
 """Mass [kg] of a shaft that turns about its centre, where it does nothing. Chosen: as in urdf/valve.urdf."""
@@ -26,7 +26,7 @@ def shaft(contents: Contents) -> Shaft:
     total = contents.base("total_inertia")
     if contents.model.actuator.motion == "linear":
         return Shaft(total, 0.0, total, "0 0 1")
-    weight = contents.base("gravity_torque") / GRAVITY
+    weight = contents.base("gravity_torque") / STANDARD_GRAVITY
     if weight == 0.0:
         return Shaft(MASS, 0.0, total, "0 0 1")
     lever = 0.5 * total / weight

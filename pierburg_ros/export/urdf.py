@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pierburg_ros.export.contents import Contents
-from pierburg_ros.export.motor import ENDLESS, INPUTS, braking, largest_speed, largest_torque, torque_per_input
+from pierburg_ros.export.motor import INPUTS, NO_LIMIT, braking, largest_speed, largest_torque, torque_per_input
 from pierburg_ros.export.remarks import remarks
 from pierburg_ros.export.shaft import shaft
 from pierburg_ros.export.xml import Element, child, document, numbers
@@ -32,7 +32,7 @@ def urdf(contents: Contents) -> str:
     child(joint, "axis", xyz=moving.axis)
     limit = child(joint, "limit", effort=largest_torque(contents), velocity=largest_speed(contents))
     if joint.get("type") != "continuous":
-        lower, upper = max(actuator.lower_stop, -ENDLESS), min(actuator.upper_stop, ENDLESS)
+        lower, upper = max(actuator.lower_stop, -NO_LIMIT), min(actuator.upper_stop, NO_LIMIT)
         limit.attrib.update(lower=numbers(lower), upper=numbers(upper))
     damping = braking(contents) + contents.quantity("viscous_damping")
     child(joint, "dynamics", damping=damping, friction=contents.base("coulomb_friction"))

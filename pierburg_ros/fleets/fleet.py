@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pierburg_ros.deadline import USUAL_BUDGET
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.errors import InputError, near
 from pierburg_ros.fleets.ageing.ageing import Ageing, ageing
@@ -51,7 +51,7 @@ class Fleet:
         return f"Look at {first.unit} first: {first.why}."
 
     def table(self, name: str = "recordings") -> pandas.DataFrame:
-        """The table `recordings`, `findings` or `ageing` as a data frame; docs/fleet.md lists the columns."""
+        """The table `recordings`, `findings` or `ageing` as a data frame; columns in docs/reference/fleet_tables.md."""
         rows = self.rows(name)
         return data_frame({column: [row[column] for row in rows] for column in (rows[0] if rows else {})})
 
@@ -101,7 +101,7 @@ def fleet(
     signals: str | Path | Mapping[str, Any] | None = None,
     topics: Mapping[str, str] | None = None,
     time: str | None = None,
-    budget: float | None = USUAL_BUDGET,
+    budget: Budget | float | str | None = USUAL_BUDGET,
     jobs: int | None = None,
     scheduler: str | None = None,
     progress: Report | None = None,
@@ -123,7 +123,7 @@ def fleet(
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     stated = checked_limits(limits or {}, nominal)
     found = sources(str(where), pattern)
-    task = Task(nominal, budget, time, signal_map(signals, topics or {}))
+    task = Task(nominal, Budget.of(budget), time, signal_map(signals, topics or {}))
     store = Store(Path(output))
     examined = conduct(found, task, store, Where(jobs, scheduler), progress or (lambda *_: None))
     made = fleet_of(examined, nominal, stated)

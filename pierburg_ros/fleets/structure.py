@@ -14,12 +14,12 @@ from typing import Any
 
 from pierburg_ros.effects import EFFECT
 
-FEWEST = 2
+FEWEST_DIAGNOSES = 2
 """Recordings whose diagnoses must change a base parameter. Chosen: one alone may be chance; not varied."""
 HALF = 0.5
 """Share of the recordings that must determine a base parameter of the common model. Chosen: a course of one below has
 more gaps than points; not varied."""
-SELDOM = 0.02
+RARE_SHARE = 0.02
 """Share of all recordings below which a base parameter is left out. Chosen: of 1,000 recordings one unit's 25 count;
 not varied."""
 
@@ -32,7 +32,7 @@ def explained(result: Mapping[str, Any]) -> bool:
 def base_names(findings: Sequence[Sequence[Mapping[str, Any]]]) -> tuple[str, ...]:
     """The base parameters that diagnoses of a fleet change, those that most of them change first."""
     counts = Counter(each["name"] for found in findings for each in found if each["kind"] == "parameter")
-    least = max(FEWEST, SELDOM * len(findings))
+    least = max(FEWEST_DIAGNOSES, RARE_SHARE * len(findings))
     return tuple(name for name, count in counts.most_common() if count >= least)
 
 

@@ -1,8 +1,7 @@
 """The results of a fleet as tables: their columns with units, and Parquet files of them.
 
 `recordings.parquet` has a row for each recording, `findings.parquet` for each finding of each recording,
-`ageing.parquet` for each quantity of each unit. docs/fleet.md lists the columns; a test holds the two against each
-other.
+`ageing.parquet` for each quantity of each unit. docs/reference/fleet_tables.md, written from here, lists them.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import hashlib
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pierburg_ros.budget import Budget
 from pierburg_ros.library.model import Model
 from pierburg_ros.library.reading import read
 from pierburg_ros.recording import Recording
@@ -15,13 +16,13 @@ from pierburg_ros.version import source_version
 
 @dataclass(frozen=True)
 class Task:
-    """The model, the time [s] that a diagnosis may take, and how recordings are read: the clock and the signal map.
+    """The model, what a diagnosis may take, and how recordings are read: the clock and the signal map.
 
     `version` is that of the sources at the start.
     """
 
     nominal: Model
-    budget: float | None
+    budget: Budget
     time: str | None = None
     signals: SignalMap = field(default_factory=SignalMap)
     version: str = field(default_factory=source_version)

@@ -21,7 +21,7 @@ from pierburg_ros.recording import Channel, Recording
 
 LIBRARY = "../../plotly.min.js"
 """Where a recording's report finds the plotting library, which all reports of a fleet share."""
-SURE = 1.959963984540054
+DEVIATIONS_95 = 1.959963984540054
 """Standard deviations to either side that hold 95 % of a normal distribution. Given: the quantile of its table."""
 
 
@@ -94,7 +94,7 @@ def _said(found: Diagnosis, recording: Recording) -> dict[str, Any]:
         "temperature": _mean(recording.temperature),
         "supply_voltage": _mean(recording.supply_voltage),
         "verdict": said.verdict,
-        "stopped": said.stopped,
+        "stopped": said.effort.stopped_by is not None,
         "summary": said.summary,
         "faults": [f"{fault.signal}: {fault.what}" for fault in said.input_faults],
         "noise_floor": said.fit.noise_floor,
@@ -154,7 +154,7 @@ def measured(asked: Measurement, task: Task) -> dict[str, Any]:
         low, high = found.ci95[name]
         values[name] = {
             "value": found.values[name],
-            "deviation": (high - low) / (2.0 * SURE),
+            "deviation": (high - low) / (2.0 * DEVIATIONS_95),
             "determined": bool(not undetermined and math.isfinite(high - low)),
         }
     return {"problem": None, "values": values}

@@ -9,19 +9,24 @@ parameter identification in dynamical systems, 2012).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Lock
+from typing import Literal
 
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
+from pierburg_ros.budget import USUAL_BUDGET, Budget
+from pierburg_ros.deadline import OutOfTime
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data, Run
-from pierburg_ros.inference.evidence import beyond, repetition, structure
+from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, beyond, repetition, structure
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.inference.least_squares import FULL, Solution, jacobian, minimise
 from pierburg_ros.plant import Model
@@ -43,21 +48,44 @@ what the valve remembers, 0.1 to 1 s; not varied."""
 
 @dataclass
 class Effort:
-    """How many simulations were made, and how many may be made: a count of work that no machine's speed changes."""
+    """How many simulations were made of those that a budget allows: a count of work that no machine's speed changes."""
 
-    most: float = math.inf
+    budget: Budget = USUAL_BUDGET
     simulations: int = 0
+    stopped_by: Literal["budget", "interrupt", "clock"] | None = None
+    _interruptible: bool = field(default=False, repr=False)
+    _begun: float = field(default_factory=time.monotonic, repr=False)
     _lock: Lock = field(default_factory=Lock, repr=False)
 
     def count(self) -> None:
-        """One more."""
+        """One more; OutOfTime where the time is over during `interruptible` work."""
         with self._lock:
             self.simulations += 1
+            if self._interruptible and time.monotonic() - self._begun >= self.budget.seconds:
+                raise OutOfTime
 
     @property
     def over(self) -> bool:
-        """Whether all that may be made were made."""
-        return self.simulations >= self.most
+        """Whether nothing larger may be tried.
+
+        The count is looked at between the steps of a search, so that it ends at the same step with any number of jobs.
+        """
+        if self.stopped_by is None and self.simulations >= self.budget.simulations:
+            self.stopped_by = "budget"
+        return self.stopped_by is not None
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Work that Ctrl-C or the end of the time may end, with what was found before."""
+        self._interruptible = True
+        try:
+            yield
+        except OutOfTime:
+            self.stopped_by = "clock"
+        except KeyboardInterrupt:
+            self.stopped_by = "interrupt"
+        finally:
+            self._interruptible = False
 
 
 @dataclass(frozen=True)
@@ -149,25 +177,20 @@ class Fitter:
         parts = []
         for run, pull in zip(self.data.runs, self.pulls, strict=True):
             self.effort.count()
-            simulated = follow(
-                model, run.inputs, run.time, run.measured, beginning(run, model), pull, self.data.per_unit
-            )
-            if after is not None:
-                self.effort.count()
-                other = follow(
-                    after, run.inputs, run.time, run.measured, beginning(run, after), pull, self.data.per_unit
-                )
-                simulated = np.where(run.time < when, simulated, other)
+            start = beginning(run, model)
+            simulated = follow(model, run.inputs, run.time, run.measured, start, pull, self.data.per_unit, after, when)
             parts.append(run.measured - simulated)
         left = np.concatenate(parts) / self.data.noise
         unknown = np.flatnonzero(~np.isfinite(left))
         left[unknown] = UNSIMULATED * (1.0 - 2.0 * (unknown % 2))
         return np.asarray(np.clip(left, -WILD, WILD))
 
-    def _simulated(self, model: Model, run: Run, pull: Pull) -> Signal:
-        """One run by a model, in the measured unit."""
-        start = beginning(run, model)
-        return follow(model, run.inputs, run.time, run.measured, start, pull, self.data.per_unit)
+    def moment(self, model: Model, after: Model) -> float:
+        """When [s] `after` had best take over from `model` in the only run: a fit moves a moment by samples."""
+        before, later = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (model, after))
+        counted = self.data.train
+        cost = np.cumsum(np.where(counted, before - later, 0.0))
+        return float(self.data.runs[0].time[int(np.argmin(cost))])
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which the quantities of an explanation are searched."""
@@ -238,6 +261,16 @@ def inertia_time(model: Model) -> float:
     """Time [s] in which friction that grows with speed and back-EMF stop a shaft; infinite without any."""
     brake = braking(model)
     return model.values.get("total_inertia", 0.0) / brake if brake > 0.0 else math.inf
+
+
+def adequate(fit: Fit) -> bool:
+    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time."""
+    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
+
+
+def excess(fit: Fit) -> float:
+    """Mean square [noise^2] that a fit leaves above the noise; 0 where it leaves nothing but noise."""
+    return 0.0 if adequate(fit) else max(fit.ratio**2 - 1.0, 0.0)
 
 
 def rms_of(fit: Fit, samples: Flags) -> float:

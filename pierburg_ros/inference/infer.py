@@ -4,22 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.choice import Choice, chosen
 from pierburg_ros.inference.data import data_of
-from pierburg_ros.inference.fit import Effort, Fitter, ladder
+from pierburg_ros.inference.explanation import Variant
+from pierburg_ros.inference.fit import Effort, Fitter, adequate, ladder
 from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.search import Progress, Search, aliases, free_parameters, key, searched
-from pierburg_ros.inference.shortlist import Span, independent
+from pierburg_ros.inference.shortlist import Span, forms, independent
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
-USUAL = 20_000
-"""Simulations after which no larger explanation is grown. Work: twice what two effects beside four drifts took."""
+
+@dataclass(frozen=True)
+class Inferred:
+    """A choice, and what it was made with: the balance, the ways in which effects may act, and the effort.
+
+    `free` are all parameters that may drift, `drifts` those of them that the recordings tell apart.
+    """
+
+    choice: Choice
+    balance: Balance
+    candidates: list[tuple[Variant, list[dict[str, float]]]]
+    free: tuple[str, ...]
+    drifts: tuple[str, ...]
+    effort: Effort
 
 
 def infer(
@@ -27,26 +42,30 @@ def infer(
     nominal: Model,
     tell: Progress = lambda _: None,
     jobs: int | None = None,
-    budget: float = 1.0,
-) -> Choice:
-    """What `nominal` lacks, by the recordings alone, with `jobs` fits at a time; `budget` in usual efforts.
+    budget: Budget = USUAL_BUDGET,
+    unlike: float = 0.0,
+) -> Inferred:
+    """What `nominal` lacks, by the recordings alone, with `jobs` fits at a time.
 
-    The same recordings give the same choice on every machine, at any load and with any number of jobs. InputError where
-    the recordings cannot be used.
+    The same recordings give the same choice on every machine, at any load and with any number of jobs, unless the clock
+    or Ctrl-C stopped it (`Inferred.effort`). An error of the size `unlike` (measured unit, root mean square) counts as
+    noise. InputError where the recordings cannot be used.
     """
     data = data_of(recordings, nominal)
+    data = replace(data, noise=math.hypot(data.noise, unlike))
     first = ladder(data)[0]
     motions = tuple(motion_of(run, nominal, first) for run in data.runs)
     balance, free = Balance(data.actuator, motions), free_parameters(nominal)
     angles = np.concatenate([motion.whole.angle for motion in motions]) / data.scales.angle
     span = Span(data.duration / data.scales.time, float(np.min(angles)), float(np.max(angles)))
-    fitter = Fitter(data, nominal, first, Effort(budget * USUAL if math.isfinite(budget) else math.inf))
+    effort = Effort(budget)
+    fitter = Fitter(data, nominal, first, effort)
     with workers(jobs) as pool:
         base = tuple(name for name in free if "." not in name)
         search = Search(balance, independent(balance, nominal, base), span, pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool)
-        if len(choice.chosen.explanation.drifted) < 2:
-            return choice
-        own = next(fit for fit in fits if key(fit) == key(choice.chosen))
-        return chosen([*fits, *aliases(own, search)], free, pool)
+        if len(choice.chosen.explanation.drifted) > 1 and adequate(choice.chosen):
+            own = next(fit for fit in fits if key(fit) == key(choice.chosen))
+            choice = chosen([*fits, *aliases(own, search)], free, pool)
+    return Inferred(choice, balance, forms(data, nominal, span), free, search.drifts, effort)

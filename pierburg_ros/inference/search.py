@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.inference.balance import Balance
-from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, gain
-from pierburg_ros.inference.explanation import Explanation, Variant, without
-from pierburg_ros.inference.fit import Fit, Fitter, ladder
+from pierburg_ros.inference.changes import Change, changes
+from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, without
+from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder
 from pierburg_ros.inference.shortlist import Promise, Span, balanced, forms, promises
 from pierburg_ros.plant import Model
 
@@ -23,11 +23,19 @@ STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
 BRIEF = 8
 """Iterations of a fit that is one of several to choose from. Work: what leads is fitted on."""
+MOVES = 2
+"""Times that the moment of a change is read off a fit, and the fit made again. Work: the second moves it by samples."""
 ALIAS = 0.05
 """Share of what an effect changes that drifts cannot make, below which it may stand for drifts. Chosen: a sag of the
 supply is absorbed to 78 to 99 % by the resistance; not varied."""
 BEAM = 3
 """Explanations of each size that are grown and fitted on. Work: as for `TRIED`."""
+WORTH = 0.9
+"""Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
+for another effect to be added. Chosen: a tenth is worth the work; not varied."""
+NEAR = 4.0
+"""Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen:
+what leaves twice the error of the best hardly holds the effect that explains most; not varied."""
 DEEPEST = 3
 """Most effects in an explanation. Given: supports of up to three effects."""
 
@@ -46,33 +54,41 @@ class Search:
 def searched(fitter: Fitter, search: Search) -> list[Fit]:
     """The explanations that lead, fitted with the weakest pull of the ladder, best first.
 
-    From the best of each size the next size is grown, until one leaves only noise or one more effect gains nothing.
+    From the best of each size the next size is grown, until one leaves only noise or one more effect gains little.
     What is no longer needed beside what came later is dropped again.
     """
     search.tell("re-estimated parameters")
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
     candidates, leading = forms(fitter.data, fitter.nominal, search.span), [base]
     found, ended = {key(base)}, followed([base], search.pool)
-    for depth in range(1, DEEPEST + 1):
-        if any(map(adequate, ended)) or fitter.effort.over:
-            break
-        grown: list[Fit] = []
-        for fit in leading:
-            search.tell(f"what could be added to {label(fit)}")
-            promised = promises(fit, search.balance, candidates, search.pool)
-            grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
-        new = [fit for fit in best_of_support(grown) if key(fit) not in found]
-        if not new:
-            break
-        found.update(map(key, new))
-        search.tell(f"{label(new[0])}, to the end")
-        led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
-        before, leading = leading[0], sorted(led, key=lambda fit: fit.chi2)
-        ended = best_of_support([*ended, *followed(led, search.pool)])
-        ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
-        if gain(before.fitted, leading[0].fitted) < SIGNIFICANT:
-            break
+    with fitter.effort.interruptible():
+        for depth in range(1, DEEPEST + 1):
+            if any(map(adequate, ended)) or fitter.effort.over:
+                break
+            grown: list[Fit] = []
+            for fit in leading:
+                search.tell(f"what could be added to {label(fit)}")
+                promised = promises(fit, search.balance, candidates, search.pool)
+                grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
+                grown += changed(fit, search) if depth == 1 else []
+            new = [fit for fit in best_of_support(grown) if key(fit) not in found]
+            if not new:
+                break
+            found.update(map(key, new))
+            search.tell(f"{label(new[0])}, to the end")
+            led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
+            before, leading = leading[0], nearest(led)
+            ended = best_of_support([*ended, *followed(led, search.pool)])
+            ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
+            if excess(leading[0]) > WORTH * excess(before):
+                break
     return ended
+
+
+def nearest(fits: Sequence[Fit]) -> list[Fit]:
+    """The fits that leave at most `NEAR` times the error of the best, best first."""
+    ordered = sorted(fits, key=lambda fit: fit.chi2)
+    return [fit for fit in ordered if excess(fit) <= NEAR * excess(ordered[0])]
 
 
 def without_one(fit: Fit, pool: Executor) -> list[Fit]:
@@ -116,6 +132,27 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
     return list(search.pool.map(one, promised))
 
 
+def changed(fit: Fit, search: Search) -> list[Fit]:
+    """Short fits in which one of the drifts of a fit is a change in mid-recording."""
+
+    def one(change: Change) -> Fit:
+        found = fit.fitter.fit(change.explanation, change.values, BRIEF)
+        for _ in range(MOVES):
+            assert found.after is not None
+            moved = {
+                **found.values,
+                f"{found.explanation.changed}{WHEN}": found.fitter.moment(found.model, found.after),
+            }
+            found = fit.fitter.fit(change.explanation, moved, BRIEF)
+        return found
+
+    def start(change: Change) -> tuple[float, Change]:
+        return fit.fitter.fit(change.explanation, change.values, 0).chi2, change
+
+    started = list(search.pool.map(start, changes(fit, search.balance)))
+    return list(search.pool.map(one, [change for _, change in sorted(started, key=lambda each: each[0])[:STARTS]]))
+
+
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
     """The same explanations fitted on, pulled ever more weakly, best first."""
 
@@ -125,11 +162,6 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
         return fit
 
     return sorted(pool.map(one, fits), key=lambda fit: fit.chi2)
-
-
-def adequate(fit: Fit) -> bool:
-    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time."""
-    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
 
 
 def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
@@ -149,13 +181,16 @@ def best_of_support(fits: Iterable[Fit]) -> list[Fit]:
 
 
 def key(fit: Fit) -> frozenset[str]:
-    """The effects of a fit."""
-    return frozenset(fit.explanation.effects)
+    """The effects of a fit, and the parameter that changes in it."""
+    own = fit.explanation
+    return frozenset((*own.effects, own.changed) if own.changed else own.effects)
 
 
 def label(fit: Fit) -> str:
     """The effects of a fit in words."""
-    return " and ".join(fit.explanation.effects).replace("_", " ") or "the re-estimated model"
+    own = fit.explanation
+    change = (f"a change of {own.changed}",) if own.changed else ()
+    return " and ".join((*change, *own.effects)).replace("_", " ") or "the re-estimated model"
 
 
 def free_parameters(nominal: Model) -> tuple[str, ...]:

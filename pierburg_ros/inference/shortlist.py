@@ -129,7 +129,7 @@ def promises(
     base = [name for name in fit.explanation.drifted if "." not in name]
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, base, fit.values, acting)
-    project, left = _projection(inside, nominal, base, values, acting)
+    project, left = projected(inside, nominal, base, values, acting)
     groups: list[tuple[Variant, list[Start], dict[str, float]]] = []
     for variant, starts in candidates:
         if variant.effect in acting:
@@ -151,7 +151,7 @@ def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[s
     return {**values, **effect.counted(own, values)}
 
 
-def _projection(
+def projected(
     balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], acting: Sequence[str]
 ) -> tuple[Signal, Signal]:
     """Orthonormal basis of what base parameters change in the balance, and the residual beside it."""

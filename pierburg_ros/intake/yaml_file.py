@@ -16,7 +16,7 @@ import yaml
 from pierburg_ros.errors import InputError
 from pierburg_ros.intake.gate import text_of
 
-DEEPEST = 20
+DEEPEST_NESTING = 20
 """Nested levels: rosbag2's metadata, the deepest that is read, has seven."""
 MOST_NODES = 50_000
 """Values and names together: a residual torque of 24 x 24 has 700, the metadata of 4,000 files 44,000; 50,000 take two
@@ -79,8 +79,8 @@ class BoundedLoader(yaml.SafeLoader):
             raise refused(event, f"the tag {event.tag}", "plain values")
         alias = isinstance(event, yaml.AliasEvent)
         before, self.depth = self.count, self.depth + 1
-        if self.depth > DEEPEST:
-            raise refused(event, "deeply nested lists", f"at most {DEEPEST} levels")
+        if self.depth > DEEPEST_NESTING:
+            raise refused(event, "deeply nested lists", f"at most {DEEPEST_NESTING} levels")
         node = super().compose_node(parent, index)
         assert node is not None  # an event that opens a node was seen
         if alias and id(node) not in self.counted:

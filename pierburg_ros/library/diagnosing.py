@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
-from pierburg_ros.deadline import USUAL_BUDGET
+from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.diagnosis import diagnose as diagnosing
 from pierburg_ros.diagnosis.result import Result as Found
 from pierburg_ros.diagnosis.schema import BaseParameter, Estimate
@@ -142,7 +142,7 @@ def diagnose(
     simulation: Readable | Sequence[Readable] | None = None,
     progress: Progress | None = None,
     jobs: int | None = None,
-    budget: float | None = USUAL_BUDGET,
+    budget: Budget | float | str | None = USUAL_BUDGET,
     force: bool = False,
 ) -> Diagnosis:
     """Where `recordings` and a model part, which physics is missing, how sure that is, and the corrected model.
@@ -151,8 +151,9 @@ def diagnose(
     the Pierburg valve). Recordings that your own simulator made of the same actuator, as `simulation`, stand for the
     model: the actuator's parameters are first fitted to them, and the diagnosis says how well. `progress` is told in
     words what is being tried, one call at a time. `jobs` is the number of fits at a time, by default one for each core.
-    Takes seconds to minutes: after `budget` [s] of an idle machine, or Ctrl-C, the best verdict yet is given and marked
-    as such; None takes what it takes. Where signals are not what they are read as, nothing is concluded, and
+    Takes seconds to a minute: after so many usual efforts (`budget`), or Ctrl-C, the best verdict yet is given and
+    marked as such; None takes what it takes, and "60s" ends by the clock. Where signals are not what they
+    are read as, nothing is concluded, and
     `document.input_faults` says so; `force` goes on. InputError where a recording cannot be used.
 
         diagnosis = pr.diagnose(["bench.mcap"], actuator="pierburg")
@@ -164,7 +165,7 @@ def diagnose(
     simulated = () if simulation is None else recordings_of(simulation, nominal.actuator)
     tell = one_at_a_time(progress or (lambda _: None))
     with one_thread():
-        found = diagnosing.diagnose(measured, nominal, tell, jobs, budget, simulated, force)
+        found = diagnosing.diagnose(measured, nominal, tell, jobs, Budget.of(budget), simulated, force)
     return Diagnosis(found, (*measured, *simulated))
 
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.units import unit_of
-from pierburg_ros.errors import InputError
+from pierburg_ros.errors import InputError, near
 from pierburg_ros.library import recording
 from pierburg_ros.recording import Recording, read_recording
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
-from pierburg_ros.recording.signals import SIGNALS
+from pierburg_ros.recording.signals import DRIVING, SIGNALS
 
 Readable: TypeAlias = Recording | str | Path
 """A recording, or where one lies."""
@@ -25,6 +26,7 @@ def read(
     topics: Mapping[str, str] | None = None,
     signals: str | Path | Mapping[str, Any] | SignalMap | None = None,
     actuator: Actuator | None = None,
+    exact: Sequence[str] = (),
 ) -> recording.Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
@@ -32,7 +34,8 @@ def read(
     `hall_voltage` [V], `position` [rad] or `speed` [rad/s]. Where there are several, those of the `actuator` are
     taken. `signals` is a signal map, as a path or a mapping: which topic and field, or which column, each signal comes
     from, and in which unit. `topics` names the topic (in a CSV the column) of a signal; `time` chooses the clock:
-    stamp, clock, publish or log. The result has `time` [s] and `measured`, both of shape (samples,), the `command`
+    stamp, clock, publish or log. Signals that are `exact` are what they are read as: no fault of them is looked for.
+    The result has `time` [s] and `measured`, both of shape (samples,), the `command`
     that drove the actuator and the other channels that acted. InputError says what is missing, and how to name it.
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
@@ -42,7 +45,19 @@ def read(
     if actuator is not None:
         check_motion(chosen, actuator)
     found = read_recording(path, time=time, signals=chosen, preferred=preferred)
+    found = replace(found, exact=found.exact | certain(exact))
     return recording.Recording(**{**vars(found), "read_with": tuple(options(time, topics or {}, signals))})
+
+
+def certain(exact: Sequence[str]) -> frozenset[str]:
+    """The inputs and quantities that are said to be exact, by the names of their signals."""
+    for signal in exact:
+        if signal not in SIGNALS:
+            raise InputError(
+                f"--exact found {signal!r}, expected one of {', '.join(SIGNALS)}.{near(signal, SIGNALS)}"
+                " Write --exact duty."
+            )
+    return frozenset(DRIVING.get(signal, signal) for signal in exact)
 
 
 def options(time: str | None, topics: Mapping[str, str], signals: object) -> Iterator[str]:

@@ -12,7 +12,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.monitoring.movements import Movement, Samples, Signal
 from pierburg_ros.plant import Inputs, Model, simulate
 
-STEP = 0.01
+SLOPE_STEP = 0.01
 """Relative change of a parameter that a slope is taken over: friction makes smaller ones rough."""
 
 SUPPLY = "supply_voltage"
@@ -72,7 +72,7 @@ def evidence(model: Model, movement: Movement, names: Sequence[str], about: Sign
         return predicted(changed, samples, start, changed.values[SUPPLY] / model.values[SUPPLY])
 
     angle = run(about, movement.start)
-    columns = [(run(about + step, movement.start) - angle) / STEP for step in STEP * np.eye(about.size)]
+    columns = [(run(about + step, movement.start) - angle) / SLOPE_STEP for step in SLOPE_STEP * np.eye(about.size)]
     columns.append((run(about, movement.start + noise) - angle) / noise)
     slopes = np.column_stack(columns)
     residual = samples.angle - angle + slopes[:, :-1] @ about

@@ -14,7 +14,7 @@ from pierburg_ros.monitoring.movements import Movement, Signal
 from pierburg_ros.plant import Model
 
 SUPPLY = "supply_voltage"
-SPREAD = 0.1
+SUPPLY_SPREAD = 0.1
 """Standard deviation of the logarithm of an unlogged supply over the model's.
 
 Twelve to 14.5 V around 13.5 V are -0.12 to +0.07.
@@ -24,15 +24,15 @@ WANDER = 0.0075
 
 The whole range from 12 to 14.5 V, 0.19, within ten minutes: 0.19 / sqrt(600).
 """
-KNOWN = 1e-6
+KNOWN_SUPPLY = 1e-6
 """Both of them where the supply is logged."""
 WIDE = 0.5
 """Standard deviation of the logarithm of a drifted parameter before anything is known: a factor of 1.65."""
-TURNS = 8
+MOST_ITERATIONS = 8
 """Most Gauss-Newton steps; movements of the valve with a parameter 40 % off need 3 to 5."""
-CLOSE = 0.1
+CONVERGED = 0.1
 """A fit is done when its parameter moves by less than this share of its standard error."""
-LARGEST = 0.3
+LARGEST_CHANGE = 0.3
 """Largest change of a logarithm in one step: friction makes the prediction straight over no more."""
 
 
@@ -50,10 +50,10 @@ class Explanation:
 
 def supply_prior(movements: Sequence[Movement], known: bool) -> NDArray[np.float64]:
     """Inverse covariance of the supply's logarithms at the movements: Gauss-Markov around the model's value."""
-    spread, wander = (KNOWN, KNOWN) if known else (SPREAD, WANDER)
+    spread, wander = (KNOWN_SUPPLY, KNOWN_SUPPLY) if known else (SUPPLY_SPREAD, WANDER)
     starts = np.array([movement.samples.time[0] for movement in movements])
     decay = np.exp(-np.abs(starts[:, np.newaxis] - starts) * (wander / spread) ** 2 / 2.0)
-    covariance = spread**2 * decay + np.eye(starts.size) * KNOWN**2
+    covariance = spread**2 * decay + np.eye(starts.size) * KNOWN_SUPPLY**2
     return np.asarray(np.linalg.inv(covariance))
 
 
@@ -90,7 +90,7 @@ def fitted(
     prior = supply_prior(movements, known)
     now = np.zeros(len(movements) + 1) if begin is None else begin
     kept, lowest, errors = now, math.inf, now
-    for _ in range(TURNS):
+    for _ in range(MOST_ITERATIONS):
         pieces = [evidence(model, m, names, _about(name, now[0], v)) for m, v in zip(movements, now[1:], strict=True)]
         cost = _cost(pieces, now, prior)
         if cost > lowest:
@@ -99,9 +99,9 @@ def fitted(
         best, covariance = solved(pieces, column, len(names) - 1, prior)
         kept, lowest, errors = now, cost, np.sqrt(np.diag(covariance))
         step = best - now
-        if np.all(np.abs(step) < CLOSE * errors):
+        if np.all(np.abs(step) < CONVERGED * errors):
             break
-        now = now + step * min(1.0, LARGEST / float(np.max(np.abs(step))))
+        now = now + step * min(1.0, LARGEST_CHANGE / float(np.max(np.abs(step))))
     samples = sum(m.samples.time.size for m in movements)
     return Explanation(name, float(kept[0]), float(errors[0]) if name else 0.0, kept[1:], lowest, samples)
 

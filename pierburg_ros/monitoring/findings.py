@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from pierburg_ros.monitoring.explanations import SUPPLY, Explanation
 
-SURE = 2.58
+DEVIATIONS_99 = 2.58
 """Standard errors to either side of an interval that holds 99 %."""
-APART = 0.02
+SUPPLY_SHIFT = 0.02
 """Shift of the supply's logarithm between two explanations from which on the supply is part of the second."""
 
 
@@ -51,7 +51,7 @@ def physics(best: Explanation, misfit: float, travel: float, start: float, end: 
 
 
 def _worded(each: Explanation, best: Explanation, known: bool) -> str:
-    low, high = (math.exp(each.change + side * SURE * each.error) for side in (-1.0, 1.0))
+    low, high = (math.exp(each.change + side * DEVIATIONS_99 * each.error) for side in (-1.0, 1.0))
     text = f"{each.name} x {math.exp(each.change):.2f}"
     if each.name == SUPPLY and not known:
         text = f"{each.name} x {math.exp(each.change + float(each.supply.mean())):.2f} (not measured)"
@@ -60,6 +60,6 @@ def _worded(each: Explanation, best: Explanation, known: bool) -> str:
     else:
         text += f" ({low:.2f} to {high:.2f})"
     shift = float(each.supply.mean() - best.supply.mean())
-    if abs(shift) > APART and each.name != SUPPLY:
+    if abs(shift) > SUPPLY_SHIFT and each.name != SUPPLY:
         text += f" together with {SUPPLY} x {math.exp(shift):.2f}"
     return text

@@ -10,13 +10,13 @@ import numpy as np
 
 from pierburg_ros.monitoring.evidence import Evidence, evidence, predicted, scaled, watched
 from pierburg_ros.monitoring.explanations import SUPPLY, Explanation, fitted, solved, supply_prior
-from pierburg_ros.monitoring.findings import SURE, Finding, drift, physics
+from pierburg_ros.monitoring.findings import DEVIATIONS_99, Finding, drift, physics
 from pierburg_ros.monitoring.movements import Movement, Samples
 from pierburg_ros.plant import Model
 
 RECENT = 6
 """Movements judged together: six of ten degrees leave a standard error of 1 to 3 % on each parameter of the valve."""
-CERTAIN = 27.0
+CERTAIN_GAIN = 27.0
 """Gain of a changed parameter, in variances, that is no chance.
 
 At most one look a second, 86,400 a day, at six parameters: a chance of 0.1 false alarms a day allows 1.9e-7 each,
@@ -24,7 +24,7 @@ where chi-squared with one degree of freedom stands at 27. Looks share movements
 """
 BEYOND_SUPPLY = 9.0
 """The same for an unlogged supply: three times its spread."""
-TIED = 10.8
+TIED_GAIN = 10.8
 """Difference in variances up to which another parameter explains as well: chi-squared, one degree, 0.1 %."""
 LEFT = 0.25
 """Energy left, in variances of the sensor's noise, that is structure: half the noise, RMS.
@@ -126,7 +126,7 @@ class Judgement:
         base = _promise(self._pieces, None, self._supply, prior)
         gains = [_promise(self._pieces, i, self._supply, prior) - base for i in range(len(self.names))]
         supply = abs(float(np.mean([piece.about[self._supply] for piece in self._pieces])))
-        return max(gains) > 0.5 * CERTAIN or float(np.mean(self._left)) > 1.0 + LEFT or supply > 0.25
+        return max(gains) > 0.5 * CERTAIN_GAIN or float(np.mean(self._left)) > 1.0 + LEFT or supply > 0.25
 
     def _searched(self) -> tuple[bool, Finding | None]:
         movements, known = self.movements, is_known(self._pieces[-1].movement)
@@ -135,8 +135,8 @@ class Judgement:
         found = [fitted(self.model, movements, name, known, begin) for name in self.names]
         found.sort(key=lambda each: each.cost)
         scale = max(1.0, found[0].cost / found[0].samples)
-        alike = [each for each in found if each.cost - found[0].cost < TIED * scale]
-        certain = BEYOND_SUPPLY if found[0].name == SUPPLY and not known else CERTAIN
+        alike = [each for each in found if each.cost - found[0].cost < TIED_GAIN * scale]
+        certain = BEYOND_SUPPLY if found[0].name == SUPPLY and not known else CERTAIN_GAIN
         if none.cost - found[0].cost < certain * scale:
             alike = [none]
         return self._concluded(none, alike, known)
@@ -151,7 +151,7 @@ class Judgement:
             self._left_since = None
             agreeing.sort(key=lambda each: each.cost)
             scale = max(1.0, agreeing[0].cost / agreeing[0].samples)
-            alike = [each for each in agreeing if each.cost - agreeing[0].cost < TIED * scale]
+            alike = [each for each in agreeing if each.cost - agreeing[0].cost < TIED_GAIN * scale]
             if alike[0].name is None or not self._matters(alike[0]):
                 return True, None
             return True, drift(alike, known, start, end)
@@ -178,13 +178,13 @@ class Judgement:
         travel = float(np.mean([np.ptp(m.samples.angle) for m in self.movements]))
         leaves = whole.cost > (1.0 + LEFT) * whole.samples and self._misfit(whole) > self.misfit_tolerance * travel
         apart = abs(whole.change - short.change)
-        return not leaves and not (apart > self.tolerance and apart > SURE * short.error)
+        return not leaves and not (apart > self.tolerance and apart > DEVIATIONS_99 * short.error)
 
     def _matters(self, explanation: Explanation) -> bool:
         """Whether the change is beyond the tolerance for certain."""
         if explanation.name == SUPPLY:
             return True
-        return abs(explanation.change) - SURE * explanation.error > self.tolerance
+        return abs(explanation.change) - DEVIATIONS_99 * explanation.error > self.tolerance
 
 
 def full(movement: Movement) -> Movement:

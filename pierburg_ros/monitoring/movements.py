@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 Signal = NDArray[np.float64]
 
-BLOCK = 25
+BLOCK_SAMPLES = 25
 """Samples looked at together: their mean has a fifth of the sensor's noise, and at 500 Hz they last 50 ms."""
-LONGEST = 40
+LONGEST_MOVEMENT = 40
 """Blocks of the longest window: 2 s at 500 Hz, in which a movement of the valve ends and its creep to rest shows."""
 QUIET = 4
 """Blocks without motion after which another movement begins a window of its own."""
@@ -24,7 +24,7 @@ not Gaussian. A false one costs a window without information, no more.
 """
 LEAD = 15
 """Samples at the start of a window in which the shaft rests for certain: motion begins after the first block."""
-SETTLED = 2
+SETTLED_BLOCKS = 2
 """Quiet blocks that still belong to a movement: the shaft comes to rest in them, and noise alone would follow."""
 REMEMBERED = 400
 """Quiet blocks that the sensor's noise is estimated from: 20 s at 500 Hz."""
@@ -85,9 +85,9 @@ class Blocks:
     def take(self, samples: Samples) -> list[Samples]:
         """Blocks that these samples fill."""
         waiting = Samples.joined([*self._rest, samples])
-        end = waiting.time.size - waiting.time.size % BLOCK
+        end = waiting.time.size - waiting.time.size % BLOCK_SAMPLES
         self._rest = [waiting.cut(end, waiting.time.size)]
-        return [waiting.cut(first, first + BLOCK) for first in range(0, end, BLOCK)]
+        return [waiting.cut(first, first + BLOCK_SAMPLES) for first in range(0, end, BLOCK_SAMPLES)]
 
 
 class Movements:
@@ -119,7 +119,7 @@ class Movements:
 
     def _grown(self, block: Samples, before: Samples | None, moves: bool) -> Movement | None:
         again = moves and self._quiet >= QUIET
-        if not again and len(self._window) < LONGEST:
+        if not again and len(self._window) < LONGEST_MOVEMENT:
             self._window.append(block)
             self._quiet = 0 if moves else self._quiet + 1
             self._last = len(self._window) if moves else self._last
@@ -132,7 +132,7 @@ class Movements:
 
     def _ended(self) -> Movement:
         window = Samples.joined(self._window)
-        end = min(self._last + SETTLED, len(self._window)) * BLOCK
+        end = min(self._last + SETTLED_BLOCKS, len(self._window)) * BLOCK_SAMPLES
         return Movement(window.cut(0, end), window.cut(end, window.time.size), self.noise)
 
     def _moves(self, block: Samples) -> bool:
@@ -140,7 +140,7 @@ class Movements:
             self._listen(block)
             return False
         change = abs(float(np.mean(block.angle)) - float(np.mean(self._before.angle)))
-        return bool(change > MOTION * self.noise * np.sqrt(2.0 / BLOCK))
+        return bool(change > MOTION * self.noise * np.sqrt(2.0 / BLOCK_SAMPLES))
 
     def _listen(self, block: Samples) -> None:
         """Take the noise from second differences, which a slow creep leaves alone; at least that of the converter."""

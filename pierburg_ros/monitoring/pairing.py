@@ -11,16 +11,16 @@ from pierburg_ros.monitoring.movements import Samples
 
 SECOND = 1_000_000_000
 """Nanoseconds in a second."""
-LATE = SECOND // 2
+LATE_DUTY = SECOND // 2
 """Time [ns] after which a sample no longer waits for its duty: ten times the usual time-out of a command."""
-GAP = 10.0
+PAIRING_GAP = 10.0
 """Distance of two samples, in usual ones, from which on what happened between them is not known.
 
 A plant that is late skips ticks and holds its duty meanwhile, which loses nothing; over ten ticks it may time out.
 """
 STALE = 5 * SECOND
 """Age [ns] from which on a measured supply no longer counts."""
-USUAL = 51
+USUAL_DISTANCES = 51
 """Distances that the usual one is the median of."""
 
 
@@ -55,7 +55,7 @@ class Pairing:
         self._supply = (-STALE, np.nan)
         self._duty: float | None = None
         self._last: int | None = None
-        self._distances: deque[int] = deque(maxlen=USUAL)
+        self._distances: deque[int] = deque(maxlen=USUAL_DISTANCES)
         self._usual = np.inf
         self.origin: int | None = None
         self.lost = 0
@@ -83,7 +83,7 @@ class Pairing:
         while len(self._angles) > 1:
             reference = self._angles[1].sent if self._follows else self._angles[0].sent
             newest = self._duties[-1][0] if self._duties else None
-            if (newest is None or newest < reference) and now - self._angles[0].sent < LATE:
+            if (newest is None or newest < reference) and now - self._angles[0].sent < LATE_DUTY:
                 break
             rows.append(self._row(self._angles.popleft(), reference))
         columns = np.array([row for row in rows if row is not None], dtype=float).reshape(-1, 5).T
@@ -119,4 +119,4 @@ class Pairing:
         if before is None:
             return True
         self._distances.append(time - before)
-        return time - before > GAP * self._usual
+        return time - before > PAIRING_GAP * self._usual

@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.monitoring.evidence import predicted
 from pierburg_ros.monitoring.findings import Finding
-from pierburg_ros.monitoring.movements import BLOCK, Samples
+from pierburg_ros.monitoring.movements import BLOCK_SAMPLES, Samples
 from pierburg_ros.plant import Model
 
 FROZEN = 4
@@ -20,21 +20,21 @@ converter's step a hundred equal samples do not happen.
 """
 BASELINE = 200
 """Blocks from which the usual noise is learnt: 10 s at 500 Hz, known to 1 %."""
-LATEST = 20
+LATEST_BLOCKS = 20
 """Blocks whose noise is held against it: 1 s at 500 Hz; the median of 20 varies by 5 %."""
-RISE = 2.0
+NOISE_RISE = 2.0
 """Rise of the noise that is reported: twenty standard deviations of the estimate."""
 SPIKES = 3
 """Blocks with a jump faster than the shaft within `SPIKE_MEMORY` blocks: one or two may be a disturbance outside."""
 SPIKE_MEMORY = 1200
 """60 s at 500 Hz."""
-FAST = 1.5
+TOP_SPEED = 1.5
 """Speed above the motor's no-load speed at its supply that the shaft cannot have: supplies reach 1.2 times nominal."""
 JUMP = 10.0
 """Beyond that speed, jumps of this many standard deviations of the noise."""
 ASLEEP = 50.0
 """Predicted travel in a block, in standard deviations of the noise, that must be seen."""
-SHARE = 0.1
+SEEN_SHARE = 0.1
 """Share of it that must be seen at least: no parameter slows the shaft to a tenth while it still moves."""
 TWICE = 2
 """Blocks in a row that must be missing before it is said."""
@@ -48,10 +48,10 @@ class SensorWatch:
         self.model = model
         self.offset_tolerance = offset_tolerance
         self._scatters: deque[bool] = deque(maxlen=BASELINE)
-        self._noises: deque[float] = deque(maxlen=LATEST)
+        self._noises: deque[float] = deque(maxlen=LATEST_BLOCKS)
         self._learnt: list[float] = []
         self._spikes: deque[bool] = deque(maxlen=SPIKE_MEMORY)
-        self._blocks: deque[Samples] = deque(maxlen=LATEST)
+        self._blocks: deque[Samples] = deque(maxlen=LATEST_BLOCKS)
         self._hold = (math.nan, 1.0, 0.0, 0.0)
         self._equal = 0
         self._asleep = 0
@@ -100,14 +100,14 @@ class SensorWatch:
             self._learnt.append(self._noises[-1])
             return None
         now = self._noise_now
-        if now <= RISE * self.usual_noise or self.usual_noise == 0.0:
+        if now <= NOISE_RISE * self.usual_noise or self.usual_noise == 0.0:
             return None
         text = f"sensor noise is {now:.2g} rad RMS, {now / self.usual_noise:.1f} times what it was"
         return _fault("noise", text, self._blocks)
 
     def _jumps(self, block: Samples) -> Finding | None:
         value = self.model.values
-        top = FAST * value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
+        top = TOP_SPEED * value["supply_voltage"] / (value["gear_ratio"] * value["torque_constant"])
         passed = np.diff(block.time)
         far = np.abs(np.diff(block.angle)) > top * passed + JUMP * max(self.usual_noise, self._noise_now)
         self._spikes.append(bool(np.any(far)) and self.usual_noise > 0.0)
@@ -117,14 +117,14 @@ class SensorWatch:
         return _fault("spikes", text, self._blocks)
 
     def _unmoved(self, block: Samples, supply: float) -> Finding | None:
-        start = float(np.mean(block.angle[: BLOCK // 5]))
+        start = float(np.mean(block.angle[: BLOCK_SAMPLES // 5]))
         if self._held(block, start, supply):
             self._asleep = 0
             return None
         travel = abs(float(predicted(self._supplied(supply), block, start, supply)[-1]) - start)
-        moved = abs(float(np.mean(block.angle[-BLOCK // 5 :])) - start)
+        moved = abs(float(np.mean(block.angle[-BLOCK_SAMPLES // 5 :])) - start)
         noise = self.usual_noise
-        missing = noise > 0.0 and travel > ASLEEP * noise and moved < SHARE * travel
+        missing = noise > 0.0 and travel > ASLEEP * noise and moved < SEEN_SHARE * travel
         self._asleep = self._asleep + 1 if missing else 0
         if travel == 0.0:
             low, high = float(np.min(block.duty)), float(np.max(block.duty))
@@ -133,7 +133,7 @@ class SensorWatch:
             return None
         text = (
             f"the angle stays at {start:.3g} rad although the duty moves the model by {travel:.2g} rad "
-            f"in {BLOCK} samples: sensor stuck, shaft jammed or motor not driven"
+            f"in {BLOCK_SAMPLES} samples: sensor stuck, shaft jammed or motor not driven"
         )
         return _fault("stuck", text, self._blocks)
 
@@ -149,10 +149,10 @@ class SensorWatch:
     def _offset(self, supply: float) -> Finding | None:
         """Once for every row of blocks: at rest where the duty of that row drives the shaft onto a stop for certain."""
         lower, upper = self.model.actuator.lower_stop, self.model.actuator.upper_stop
-        if self._count % LATEST or len(self._blocks) < LATEST or not math.isfinite(upper - lower):
+        if self._count % LATEST_BLOCKS or len(self._blocks) < LATEST_BLOCKS or not math.isfinite(upper - lower):
             return None
         row = Samples.joined(list(self._blocks))
-        means = row.angle.reshape(LATEST, BLOCK).mean(axis=1)
+        means = row.angle.reshape(LATEST_BLOCKS, BLOCK_SAMPLES).mean(axis=1)
         end = float(predicted(self._supplied(supply), row, 0.5 * (lower + upper), supply)[-1])
         stop = next((s for s in (lower, upper) if abs(end - s) < 1e-6 * (upper - lower)), None)
         limit = self.offset_tolerance * (upper - lower)

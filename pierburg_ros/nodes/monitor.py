@@ -28,7 +28,7 @@ from pierburg_ros.nodes.graph.running import run
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.model_file import read_model
 
-PERIOD = 0.1
+MONITOR_LOOK = 0.1
 """Time between two looks at the topics [s]: as long as a movement that ended may wait to be judged."""
 SILENCE = 2.0
 """Time without samples [s] after which that is said: longer than a node takes to start to publish once connected."""
@@ -60,7 +60,7 @@ class MonitorNode(LiveNode):
         self._split_at, self._recording, self._strangers = -SPLITS_APART, "", ""
         self._heard = dict.fromkeys((values["angle_topic"], values["duty_topic"]), time.monotonic())
         self.samples = 0
-        self.create_timer(PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_timer(MONITOR_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.open_parameters()
 
     def counters(self) -> Mapping[str, object]:

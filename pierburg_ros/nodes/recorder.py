@@ -33,7 +33,7 @@ WRITE_PERIOD = 0.05
 """Time between two writings [s]."""
 AT_THE_START = 5_000_000_000
 """Time [ns] for which messages wait for the first `/clock`, which may be read after what was sent behind it."""
-PATIENCE = 5.0
+SPLIT_PATIENCE = 5.0
 """Longest wait [s] for what was sent before a file is to end: a publisher that was killed is waited for in vain."""
 LOOK_PERIOD = 0.5
 """Time between two looks at the graph [s]."""
@@ -114,7 +114,7 @@ class RecorderNode(LiveNode):
 
     def _catch_up(self) -> str:
         """Write what was sent before this call, waiting for what is on the way; what is to be said of the rest."""
-        called, end = time.time_ns(), time.monotonic() + PATIENCE
+        called, end = time.time_ns(), time.monotonic() + SPLIT_PATIENCE
         came, behind = True, list[str]()
         while (came or behind) and time.monotonic() < end and not self.stopping.wait(WRITE_PERIOD):
             came, behind = self._take() <= called, self.topics.behind(called)

@@ -23,7 +23,7 @@ from pierburg_ros.nodes.graph.running import run
 from pierburg_ros.serial_line.link import Link, Received
 from pierburg_ros.serial_line.port import Port, Unplugged
 
-PATIENCE = 0.1
+READ_PATIENCE = 0.1
 """Longest wait for bytes [s], after which silence and the end of the node are looked at."""
 RETRY = 0.5
 """Time between two tries to open a line that is not there [s]: a device over USB takes as long to appear."""
@@ -98,7 +98,7 @@ class SerialDriverNode(LiveNode):
     def _listen(self, port: Port) -> None:
         self._heard = time.monotonic()
         while not self.stopping.is_set():
-            data = port.read(PATIENCE)
+            data = port.read(READ_PATIENCE)
             for received in self.link.take(data, time.time_ns()):
                 self._heard = time.monotonic()
                 self._publish(received)

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 
 NONE = "-"
-FEWEST = 3
+FEWEST_DIGITS = 3
 """Digits of a value whose interval is wide. Chosen: with one, 2.54 beside 2.8 reads as more."""
-MOST = 9
+MOST_DIGITS = 9
 """Digits beyond which none is shown. Derived: a double has 16, a person reads a phone number."""
 
 
@@ -30,11 +30,12 @@ def interval(ends: Sequence[float] | None) -> str:
 
 
 def value(middle: float | None, ends: Sequence[float] | None = None) -> str:
-    """A value with as many digits as its interval has, and no less than `FEWEST`; a dash where there is none."""
+    """A value with as many digits as its interval has, and no less than `FEWEST_DIGITS`; a dash where there is none."""
     if middle is None or ends is None:
         return number(middle)
     shown = _shown(middle, (*ends, middle))
-    return shown if abs(float(shown) - middle) <= 0.5 * 10.0 ** (1 - FEWEST) * abs(middle) else number(middle, FEWEST)
+    is_close = abs(float(shown) - middle) <= 0.5 * 10.0 ** (1 - FEWEST_DIGITS) * abs(middle)
+    return shown if is_close else number(middle, FEWEST_DIGITS)
 
 
 def _shown(middle: float, among: Sequence[float]) -> str:
@@ -44,7 +45,7 @@ def _shown(middle: float, among: Sequence[float]) -> str:
     if width <= 0.0 or not math.isfinite(width) or largest == 0.0:
         return number(middle)
     places = 1 - math.floor(math.log10(width))
-    places = min(places, MOST - 1 - math.floor(math.log10(largest)))
+    places = min(places, MOST_DIGITS - 1 - math.floor(math.log10(largest)))
     if largest >= 1e6 or largest < 1e-4:
         return f"{middle:.{max(places + math.floor(math.log10(largest)), 0)}e}"
     return f"{middle:.{max(places, 0)}f}"

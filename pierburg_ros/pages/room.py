@@ -9,7 +9,7 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.pages.over_time import extremes
 
-ROOM = 1.25e6
+SIGNAL_ROOM = 1.25e6
 """Characters of a page that its signals may take. Derived: 6 MiB less 4.82 MB of plotly.js and 0.2 MB for the rest."""
 STORED = 4.0 / 3.0
 """Characters of a page for each byte of a signal. Derived: base64 writes three bytes as four characters."""
@@ -24,7 +24,7 @@ def page_signals(recordings: Sequence[Mapping[str, Signal]], telling: Sequence[s
     needed = sum(STORED * each["time"].size * (4 + 2 * (len(each) - 1)) for each in recordings)
     signals: dict[str, Signal] = {}
     for number, each in enumerate(recordings):
-        kept = slice(None) if needed <= ROOM else _kept(each, telling, ROOM / needed)
+        kept = slice(None) if needed <= SIGNAL_ROOM else _kept(each, telling, SIGNAL_ROOM / needed)
         signals |= {f"{number}/{name}": values[kept] for name, values in each.items()}
     return signals
 

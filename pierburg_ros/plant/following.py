@@ -60,21 +60,47 @@ class Pull:
             return Pull(last, seen, 1.0 - kept**2, (1.0 - kept) ** 2 / passed)
         return Pull(last, seen, 1.0 - kept, np.zeros(last.size))
 
+    def within(self, first: int, end: int) -> tuple[NDArray[np.int64], NDArray[np.int64], Signal, Signal]:
+        """The pulls after the samples from `first` on and before `end`, counted from `first`."""
+        own = (self.last > first) & (self.last < end)
+        return self.last[own] - first, np.maximum(self.seen[own] - first, 1), self.angle[own], self.rate[own]
+
 
 def follow(
-    model: Model, inputs: Inputs, time: Signal, measured: Signal, start: Signal, pull: Pull, per_unit: float
+    model: Model,
+    inputs: Inputs,
+    time: Signal,
+    measured: Signal,
+    start: Signal,
+    pull: Pull,
+    per_unit: float,
+    after: Model | None = None,
+    when: float = math.inf,
 ) -> Signal:
     """Measured quantity by `model` at each `time` [s], shape (samples,), the state pulled towards `measured`.
 
     A sample is what the model says before the pull that it is part of. `start` is angle [rad], velocity [rad/s],
     acceleration [rad/s^2] and way of coming, as `simulate` begins; `per_unit` the angle [rad] of one measured unit.
-    Not a number from where the model cannot be simulated.
+    `after` takes over the running state `when` [s] it is time. Not a number from where the model cannot be simulated.
     """
     record, state, output = model.record()[0], blank_state()[0], np.empty(time.size)
     driven_by = channels(inputs)
     place(record, state, *start)
     begin(record, state, *driven_by, time[0])
-    pulled(record, state, *driven_by, time, measured, pull.last, pull.seen, pull.angle, pull.rate, per_unit, output)
+    split = time.size if after is None else int(np.searchsorted(time, when))
+    for part, first, end in ((model, 0, min(split + 1, time.size)), (after, split, time.size)):
+        if part is not None and end > first:
+            own = pull.within(first, end)
+            pulled(
+                part.record()[0],
+                state,
+                *driven_by,
+                time[first:end],
+                measured[first:end],
+                *own,
+                per_unit,
+                output[first:end],
+            )
     return output
 
 

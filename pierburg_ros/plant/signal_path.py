@@ -12,7 +12,7 @@ from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.state import QUEUE
 from pierburg_ros.plant.torques import drive, sensor
 
-LONGEST = 0.021
+LONGEST_STRETCH = 0.021
 """Longest stretch over which input in force and resistance stay, and the shaft's velocity for the sensor's lag, as a
 share of the actuator's own time; 2 ms for the valve."""
 FORGOTTEN = 20.0
@@ -98,7 +98,7 @@ def _act(p, s, command, supply, closed_bridge, duration):
     if math.isnan(s.angle):
         s.time += duration
         return
-    stretches, longest = 1, LONGEST * p.own.time
+    stretches, longest = 1, LONGEST_STRETCH * p.own.time
     if p.creeps and duration > longest:
         stretches = max(math.ceil(duration / longest - 1e-6), 1)
     stretch = duration / stretches

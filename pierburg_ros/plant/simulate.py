@@ -18,7 +18,7 @@ from pierburg_ros.plant.motion.events import settle
 from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import AHEAD, blank_state, new_state, place
+from pierburg_ros.plant.state import LOOKAHEAD, blank_state, new_state, place
 from pierburg_ros.plant.torques.sensor import read_all, show
 from pierburg_ros.workers import workers
 
@@ -353,6 +353,6 @@ def run(p, s, input_times, command, supply_voltage, enabled, sample_times, outpu
 @kernel
 def _look_ahead(s, sample_times, put):
     """Have the samples after those `put` read next."""
-    s.ahead.count, s.sampled = min(sample_times.size - put, AHEAD), 0
+    s.ahead.count, s.sampled = min(sample_times.size - put, LOOKAHEAD), 0
     for sample in range(s.ahead.count):
         s.ahead.time[sample] = sample_times[put + sample]

@@ -14,14 +14,14 @@ from pierburg_ros.plant.torques.sensor import SPEED, sensed, trail
 QUEUE = 1024
 """Changes of the command that may be under way at once when the input is delayed."""
 
-AHEAD = 1024
+LOOKAHEAD = 1024
 """Samples that the plant looks ahead: at the last of them a step ends."""
 
 SAMPLES = np.dtype(
     [
         ("count", np.int64),
-        ("time", np.float64, (AHEAD,)),  # s
-        ("shown", np.float64, (AHEAD,)),  # rad or rad/s
+        ("time", np.float64, (LOOKAHEAD,)),  # s
+        ("shown", np.float64, (LOOKAHEAD,)),  # rad or rad/s
     ],
     align=True,
 )

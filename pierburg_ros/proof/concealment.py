@@ -28,7 +28,7 @@ DIRTY = dict.fromkeys(DIRT, 8)
 """Trials of each kind of dirt: in half of them nothing is hidden, in the others a plain effect."""
 PLAIN = ("static_friction", "load_dependent_friction", "sensor_lag", "nonlinear_spring")
 """Effects that are hidden in dirty recordings, in turn."""
-NOISES = (0.001, 0.002, 0.002, 0.004, 0.004)  # V
+SENSOR_NOISES = (0.001, 0.002, 0.002, 0.004, 0.004)  # V
 PUBLISHED = {
     **dict.fromkeys(CATALOGUE, 20),
     "consistent": 40,
@@ -59,7 +59,7 @@ def draw(kind: str, number: int, seed: int) -> Trial:
         remainder=remainder(random) if kind in WITH_REMAINDER else {},
         closed_loop=closed_loop,
         controller=_controller(random) if closed_loop else {},
-        noise=float(random.choice(NOISES)),
+        noise=float(random.choice(SENSOR_NOISES)),
     )
     return _recorded(trial, random)
 

@@ -1,4 +1,4 @@
-"""Writes what a run of blind trials came to: as JSON for machines, as Markdown for `docs/proof.md`."""
+"""Writes what a run of blind trials came to: as JSON for machines, as Markdown for people."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def timing(run: Run) -> str:
 
 
 def markdown(run: Run) -> str:
-    """The generated part of `docs/proof.md`."""
+    """The generated part of `proof.md`."""
     cut = "" if len(run.results) == run.plan.size else " The run was cut short: every figure is for the trials done."
     if run.plan.dirty:
         return f"Seed {run.plan.seed}, n = {len(run.results)}.{cut} {timing(run)}\n\n{by_dirt(run)}\n"

@@ -25,7 +25,7 @@ from pierburg_ros.proof.formulation import simulate_textbook
 from pierburg_ros.proof.trial import Trial
 from pierburg_ros.recording import read_recording
 
-PATIENCE = 600.0  # s of wall time, after which a recording over the graph is given up
+GRAPH_PATIENCE = 600.0  # s of wall time, after which a recording over the graph is given up
 POLL = 1.0  # s
 ATTEMPTS = 3
 
@@ -103,8 +103,8 @@ def wait_for(path: Path, duration: float, nodes: list[subprocess.Popen[bytes]]) 
     while time.monotonic() - begun < duration or recorded(path) < duration:
         if any(node.poll() is not None for node in nodes):
             raise NotRecorded(f"a node ended while {path.name} was recorded; see {path.with_suffix('.log')}.")
-        if time.monotonic() - begun > PATIENCE:
-            raise NotRecorded(f"{path.name} did not reach {duration:g} s within {PATIENCE:g} s of wall time.")
+        if time.monotonic() - begun > GRAPH_PATIENCE:
+            raise NotRecorded(f"{path.name} did not reach {duration:g} s within {GRAPH_PATIENCE:g} s of wall time.")
         time.sleep(POLL)
 
 

@@ -39,7 +39,7 @@ DIAGNOSE = (sys.executable, "-c", "from pierburg_ros.cli.app import main; main()
 """The command as a process of its own; the recording and `--output DIR` follow."""
 GIVEN = {"recording.mcap": "train.mcap"}
 """What a diagnosis gets, under a name that says nothing, and the file of the trial that it is."""
-LONGEST = 900.0  # s, after which a diagnosis counts as failed
+LONGEST_DIAGNOSIS = 900.0  # s, after which a diagnosis counts as failed
 RESULT = "result.json"
 
 
@@ -59,7 +59,10 @@ def prepare(trial: Trial, folder: Path) -> None:
 
 
 def diagnose(
-    folder: Path, command: Sequence[str] = DIAGNOSE, given: Mapping[str, str] = GIVEN, longest: float = LONGEST
+    folder: Path,
+    command: Sequence[str] = DIAGNOSE,
+    given: Mapping[str, str] = GIVEN,
+    longest: float = LONGEST_DIAGNOSIS,
 ) -> float:
     """Diagnose in a separate process what is `given`, which sees nothing else; gives the time it took [s].
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 
-BLOCK = 0.2  # s, shortest window that section 5 of docs/contract.md allows
+SHORTEST_WINDOW = 0.2  # s, shortest window that section 5 of docs/contract.md allows
 
 
 def held(time: Signal, signal: Signal, windows: Sequence[Mapping[str, float]]) -> tuple[float, float]:
@@ -23,9 +23,9 @@ def held(time: Signal, signal: Signal, windows: Sequence[Mapping[str, float]]) -
 
 def best(time: Signal, signal: Signal, length: float) -> float:
     """Largest share of the signal's energy that blocks of 0.2 s, together `length` [s] long, can hold [1]."""
-    block = np.floor((time - time[0]) / BLOCK + 1e-6).astype(int)
+    block = np.floor((time - time[0]) / SHORTEST_WINDOW + 1e-6).astype(int)
     energies = np.sort(np.bincount(block, weights=signal**2))[::-1]
-    whole, rest = divmod(length / BLOCK, 1.0)
+    whole, rest = divmod(length / SHORTEST_WINDOW, 1.0)
     count = min(int(whole), energies.size)
     following = energies[count] * rest if count < energies.size else 0.0
     return float((energies[:count].sum() + following) / energies.sum())

@@ -22,7 +22,7 @@ HEADER_STAMP = "header.stamp"
 """The path of the stamp in messages that begin with a header; it stands at one place in all of them."""
 SHARED = 0.9
 """Least share of the range of sequence numbers that two topics of one tick have in common."""
-TOLERANCE = 0.1
+CLOCK_TOLERANCE = 0.1
 """Largest typical difference [s] between two channels: above a delay on the way, below a wrong clock."""
 LATCHED = 86_400.0
 """Largest age [s] of a message that was published before the recording began."""
@@ -187,7 +187,7 @@ def check_one_clock(name: str, measured: Timed, other: Timed) -> None:
     expected = np.interp(arrival[inside] - samples[0], samples - samples[0], measured.time - origin)
     late = float(np.median(expected - (other.time[inside] - origin))) * 1e-9
     pace = (measured.time[-1] - origin) / (samples[-1] - samples[0])
-    tolerance = TOLERANCE * max(1.0, pace)
+    tolerance = CLOCK_TOLERANCE * max(1.0, pace)
     if not -tolerance <= late <= (LATCHED if few else tolerance):
         raise InputError(
             f"{name} has times from two clocks: {measured.messages.topic} ({measured.source}) and"

@@ -14,7 +14,7 @@ from rosbags.typesys.store import Typestore
 from pierburg_ros.errors import InputError, near
 from pierburg_ros.recording.formats import cdr
 from pierburg_ros.recording.formats.definitions import types_of
-from pierburg_ros.recording.formats.messages import LONGEST, Messages
+from pierburg_ros.recording.formats.messages import LONGEST_MESSAGE, Messages
 from pierburg_ros.recording.message_types import completed
 from pierburg_ros.recording.signal_map.field_path import Absent, FieldPath, Named, names_beside, value_at
 
@@ -118,7 +118,8 @@ def decoded(store: Typestore, messages: Messages, place: int, data: bytes) -> An
     """One message."""
     if not data:
         raise InputError(
-            f"{messages.topic} has messages of more than {LONGEST >> 10} KiB, expected those of a signal. Name another."
+            f"{messages.topic} has messages of more than {LONGEST_MESSAGE >> 10} KiB, expected those of a signal."
+            " Name another."
         )
     try:
         return store.deserialize_cdr(data, messages.type)

@@ -26,7 +26,7 @@ FAR = 5.0
 1.0 times the usual one in the practice recordings and at most 1.27 times on the measured bench. At a load
 of 27 a plant stood still for up to 1.3 s, 71 times the usual interval, and 327 of 318,866 intervals were too long:
 without numbers that cannot be told from a loss, and with them nothing was lost."""
-USUAL = 0.95
+USUAL_QUANTILE = 0.95
 """Quantile of the intervals that is usual; with it one interval in twenty may be a gap."""
 REPEATED = 0.1
 """Least share of values equal to the one before in a channel that is sent regularly. What is sent on change repeats
@@ -84,7 +84,7 @@ def pauses(time: Signal) -> tuple[Span, ...]:
     ticks = interval / max(float(np.median(interval)), np.finfo(float).tiny)
     whole = np.maximum(np.round(ticks), 1.0)
     even = np.quantile(np.abs(ticks - whole), MOSTLY) <= EVEN and np.mean(whole == 1.0) >= SINGLE
-    far = FAR * max(np.quantile(interval, USUAL), np.finfo(float).tiny)
+    far = FAR * max(np.quantile(interval, USUAL_QUANTILE), np.finfo(float).tiny)
     long = np.flatnonzero(whole > 1.0 if even else interval > far)
     return tuple((float(time[place]), float(time[place + 1])) for place in long)
 

@@ -13,7 +13,7 @@ from pierburg_ros.recording.formats.messages import Messages
 from pierburg_ros.recording.signal_map.field_path import FieldPath, Named, Step
 
 TIMES = {"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"}
-DEEPEST = 8
+DEEPEST_MESSAGES = 8
 """Messages in messages that are looked into."""
 MOST_FIELDS = 200
 """Fields of a type that are listed."""
@@ -24,7 +24,7 @@ def completed(store: Typestore, messages: Messages, path: FieldPath | None, orig
     steps = path.steps if path else ()
     description = described(store, messages, steps, origin)
     while description[0] == Nodetype.NAME and description[1] not in TIMES:
-        below = [name for name, inner in fields_of(store, description[1]) if has_number(store, inner, DEEPEST)]
+        below = [name for name, inner in fields_of(store, description[1]) if has_number(store, inner, DEEPEST_MESSAGES)]
         if len(below) != 1:
             raise InputError(
                 f"{origin}: {messages.topic} ({messages.type}) holds {'several numbers' if below else 'no number'}"
@@ -91,7 +91,7 @@ def has_number(store: Typestore, description: Description, depth: int) -> bool:
 def listed(store: Typestore, name: str) -> list[tuple[str, Description]]:
     """The paths to the numbers and stamps of a type, arrays marked with [], as many as a list may have."""
     found = []
-    for path, description in leaves(store, (Nodetype.NAME, name), "", DEEPEST):
+    for path, description in leaves(store, (Nodetype.NAME, name), "", DEEPEST_MESSAGES):
         found.append((path, description))
         if len(found) == MOST_FIELDS:
             break

@@ -26,14 +26,14 @@ from pierburg_ros.recording.tables import Tables, read_tables, tabulated
 from pierburg_ros.recording.topics import TICKS, Found, Topics
 
 SOURCES = ("stamp", "clock", "publish", "log")
-LONGEST = 7 * 86_400.0
+LONGEST_RECORDING = 7 * 86_400.0
 """Time [s] that a recording may span: a week. What acts all the time is simulated in steps of 2 ms, and a week of them
 takes about two minutes."""
 SPARSEST = 60.0
 """Time [s] for each sample at most: no motion of an actuator shows in less than one sample a minute."""
 UNITS_OF_TIME = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 """Smaller units [s] in which times may be written, the largest first."""
-USUAL = 0.2
+SLOW_INTERVAL = 0.2
 """Interval [s] below which samples of a motion usually lie."""
 ACTING = ("supply_voltage", "enabled")
 """Optional signals without which the simulation of the recording would differ."""
@@ -64,7 +64,8 @@ def read_recording(
         else:
             made = tabulated(Tables(found) if isinstance(found, Columns) else found, time, chosen, preferred)
         check_bounds(made)
-    return replace(made, path=path)
+    exact = {DRIVING.get(signal, signal) for signal, source in made.sources.items() if source.exact}
+    return replace(made, path=path, exact=frozenset(exact))
 
 
 def wanted(chosen: SignalMap) -> Wanted:
@@ -76,7 +77,7 @@ def wanted(chosen: SignalMap) -> Wanted:
 
 def check_bounds(recording: Recording) -> None:
     """Refuse what no bench gives: values beyond any sensor, and times that no motion needs."""
-    longest = min(LONGEST, SPARSEST * recording.time.size)
+    longest = min(LONGEST_RECORDING, SPARSEST * recording.time.size)
     if not recording.duration <= longest:
         raise InputError(
             f"{recording.name} spans {recording.duration:.3g} s with {recording.time.size} samples, expected at most"
@@ -93,7 +94,7 @@ def check_bounds(recording: Recording) -> None:
 def _unit_of(recording: Recording) -> str:
     """The line of a signal map with which samples would lie milliseconds apart, where a unit has that effect."""
     interval = float(np.median(np.diff(recording.time)))
-    units = [unit for unit, seconds in UNITS_OF_TIME.items() if seconds * interval <= USUAL]
+    units = [unit for unit, seconds in UNITS_OF_TIME.items() if seconds * interval <= SLOW_INTERVAL]
     return f" (`time: {{unit: {units[0]}}}` in a signal map)" if units else ""
 
 
@@ -126,6 +127,9 @@ def assemble(topics: Topics, choice: str | None, preferred: Collection[str] = ()
         path=None,
         read_with=(),
         file_times=file_times(timed["measured"], first.time),
+        sources={each.signal: each.source for each in found.values()},
+        clock=topics.chosen.time,
+        exact=frozenset(),
     )
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 from pierburg_ros.errors import InputError
 from pierburg_ros.recording.file_times import FileTimes
 from pierburg_ros.recording.loss import Loss, Span, merged, sentence, within
+from pierburg_ros.recording.signal_map.source import Source, TimeSource
+from pierburg_ros.recording.signals import DRIVING
 
 Samples = NDArray[np.float64]
 UNITS = {"hall_voltage": "V", "position": "rad", "speed": "rad/s"}
@@ -58,7 +61,8 @@ class Recording:
     are in m and N. `time_source` says which clock the times come from. A sample that was sent again, with the same
     time and value as in lockstep without a reply, counts once. `losses` tells of messages that are known to be missing,
     `path` where it was read from and `read_with` with which options of a command, `file_times` when its samples lie
-    there.
+    there. `sources` says where each signal was read from, and `clock` the times, where a map or a table says it. What
+    is `exact` (an input or a quantity) is what it is read as.
     """
 
     name: str
@@ -76,6 +80,9 @@ class Recording:
     path: Path | None = None
     file_times: FileTimes | None = None
     read_with: tuple[str, ...] = ()
+    sources: Mapping[str, Source] = field(default_factory=dict)
+    clock: TimeSource | None = None
+    exact: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", np.asarray(self.time, dtype=np.float64))
@@ -121,6 +128,13 @@ class Recording:
     def unit(self) -> str:
         """Unit of the measured quantity of a rotary actuator."""
         return UNITS[self.quantity]
+
+    def source(self, signal: str) -> tuple[str, Source]:
+        """What a signal map calls a signal, an input or a quantity, and where it was read from."""
+        for name, source in self.sources.items():
+            if signal in (name, DRIVING.get(name)):
+                return name, source
+        return signal, Source("topic", "")
 
     @property
     def duration(self) -> float:

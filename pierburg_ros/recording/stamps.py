@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.recording.noise import USUAL
+from pierburg_ros.recording.noise import USUAL_INTERVAL
 
 ACROSS = 10
 """Samples across which the rate of a signal is told. Work: noise then takes off a tenth of what it does from sample to
 sample, and is taken off besides; not varied."""
-FASTEST = 0.05
+FASTEST_SHARE = 0.05
 """Share of the samples, those in the fastest motion, that say how far stamps are off. Chosen: 1,500 of a minute at
 500 Hz, whose median is known to 5 %; not varied."""
 CHI2 = 0.455
@@ -25,7 +25,7 @@ def stamp_error(time: Signal, measured: Signal, noise: float) -> float:
     either side. What it is rougher is the rate times the error of the stamps. The lesser of the two counts.
     """
     interval = np.diff(time)
-    usual = interval < USUAL * np.median(interval)
+    usual = interval < USUAL_INTERVAL * np.median(interval)
     if measured.size <= ACROSS or not usual.any():
         return 0.0
     uneven = float(np.std(interval[usual]) / np.sqrt(2.0))
@@ -34,7 +34,7 @@ def stamp_error(time: Signal, measured: Signal, noise: float) -> float:
     together = usual[:-3] & usual[1:-2] & usual[2:-1] & usual[3:]
     if not together.any():
         return 0.0
-    fast = together & (square >= np.quantile(square[together], 1.0 - FASTEST))
+    fast = together & (square >= np.quantile(square[together], 1.0 - FASTEST_SHARE))
     excess = float(np.median(rough[fast])) / CHI2 - noise**2
     moving = float(np.median(square[fast]))
     return min(uneven, float(np.sqrt(max(excess, 0.0) / moving))) if moving > 0.0 else 0.0

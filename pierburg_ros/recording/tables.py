@@ -100,6 +100,9 @@ def tabulated(tables: Tables, choice: str | None, chosen: SignalMap, preferred: 
         path=None,
         read_with=(),
         file_times=FileTimes.of_column(measured.time, reader.first + origin),
+        sources={signal: reader.whence(signal) for signal in (driving, measuring, *acting)},
+        clock=reader.clock,
+        exact=frozenset(),
         **acting,
     )
 
@@ -185,7 +188,11 @@ class TableReader:
                 f"{part.name} has {column} in counts, expected how much one is. Write it into a signal map, as"
                 f" {signal}: {{column: {column}, unit: counts, scale: 0.001}}."
             )
-        return replace(source, unit=factor_of(part, column, stated, SIGNALS[signal].units))
+        return replace(source, unit=factor_of(part, column, stated, SIGNALS[signal].units), written=stated)
+
+    def whence(self, signal: str) -> Source:
+        """Where the signal was read from, in its first part."""
+        return replace(self.source(self.parts(signal)[0], signal), kind="column")
 
     def time(self, part: Columns) -> Signal:
         """The times [s] of the rows, since the first time that was read."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,11 +25,12 @@ TICKS = "clock"
 
 @dataclass(frozen=True)
 class Found:
-    """The messages that give a signal, and its value [SI] in each."""
+    """The messages that give a signal, its value [SI] in each, and where that comes from."""
 
     signal: str
     messages: Messages
     values: Signal
+    source: Source
 
 
 def nothing(source: Source, signal: str, found: str) -> InputError:
@@ -64,7 +65,12 @@ class Topics:
         origin = self.bag.name if source.origin in (self.bag.name, "--topic") else source.origin
         usual = source.path is None and (messages.type != JOINT_STATE or signal == "position")
         read = numbers(messages, source.path, origin, usual=usual)
-        return Found(signal, messages.select(read.kept), source.values(read.raw.astype(np.float64)))
+        return Found(
+            signal,
+            messages.select(read.kept),
+            source.values(read.raw.astype(np.float64)),
+            replace(source, kind="topic"),
+        )
 
     def check_type(self, signal: str, messages: Messages) -> None:
         """Refuse a topic that is called like the signal and is something else than one number."""

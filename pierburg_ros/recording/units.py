@@ -13,7 +13,7 @@ PREFIXES = {
 }  # fmt: skip
 """Factor of each prefix of SI."""
 BASE = ("rad", "V", "A", "N", "m", "s", "degC")
-OTHERS: dict[str, tuple[float, dict[str, int]]] = {
+OTHER_UNITS: dict[str, tuple[float, dict[str, int]]] = {
     "1": (1.0, {}),
     "percent": (0.01, {}),
     "%": (0.01, {}),
@@ -37,7 +37,7 @@ USUAL = (
 """Units that a wrong one may be meant for."""
 COUNTS = "counts"
 """Steps of a converter: what one is worth is the scale of its signal."""
-LONGEST = 40
+LONGEST_UNIT = 40
 """Characters of a unit at most."""
 PART = re.compile(r"(?P<mark>[./*·]?)(?P<name>[^./*·^\s]+?)(?P<power>\^?-?[12])?(?=[./*·]|$)")
 
@@ -59,12 +59,12 @@ def unit_of(written: str) -> Unit:
     """The unit that is `written`; ValueError where it is not known."""
     if written == COUNTS:
         return Unit(written, 1.0, {})
-    if written in OTHERS:
-        factor, others = OTHERS[written]
+    if written in OTHER_UNITS:
+        factor, others = OTHER_UNITS[written]
         return Unit(written, factor, others)
     text = written.replace("Nm", "N.m")
-    if not text or len(text) > LONGEST or text[0] in "./*·":
-        raise ValueError(f"{written[:LONGEST]!r} is no unit")
+    if not text or len(text) > LONGEST_UNIT or text[0] in "./*·":
+        raise ValueError(f"{written[:LONGEST_UNIT]!r} is no unit")
     total, exponents, place = 1.0, Counter[str](), 0
     for part in PART.finditer(text):
         if part.start() != place:
@@ -81,8 +81,8 @@ def unit_of(written: str) -> Unit:
 
 def simple(name: str) -> tuple[float, dict[str, int]]:
     """Factor and exponents of one unit without a product; with its prefix, where it is one of SI."""
-    if name in OTHERS:
-        return OTHERS[name]
+    if name in OTHER_UNITS:
+        return OTHER_UNITS[name]
     for base in BASE:
         if name.endswith(base) and name.removesuffix(base) in PREFIXES:
             return PREFIXES[name.removesuffix(base)], {base: 1}

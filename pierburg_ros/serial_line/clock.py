@@ -10,11 +10,11 @@ SECOND = 1_000_000_000
 """Nanoseconds in a second."""
 SPAN = SECOND
 """Time of the device [ns] in which the least delayed arrival is kept: at 500 Hz one of 500."""
-KEPT = 60
+KEPT_ARRIVALS = 60
 """Such arrivals the rate is estimated from: a minute, in which the temperature of a crystal changes little."""
-FASTEST = 5e-4
+LARGEST_RATE_ERROR = 5e-4
 """Largest deviation of the rates that is believed: ten times that of a poor crystal; a ceramic resonator reaches it."""
-FEWEST = 10
+FEWEST_ARRIVALS = 10
 """Arrivals from which on a rate is estimated: with 1 ms of spread over 10 s it is known to 1e-4."""
 
 
@@ -27,7 +27,7 @@ class DeviceClock:
 
     def __init__(self) -> None:
         self.rate = 0.0
-        self._least: deque[tuple[int, int]] = deque(maxlen=KEPT)
+        self._least: deque[tuple[int, int]] = deque(maxlen=KEPT_ARRIVALS)
         self._current: tuple[int, int] | None = None
         self._begun = 0
         self._last = 0
@@ -52,10 +52,12 @@ class DeviceClock:
 
     def _estimate(self) -> None:
         """The rate of the host's clock over the device's, minus one: slope of the least delayed arrivals."""
-        if len(self._least) < FEWEST:
+        if len(self._least) < FEWEST_ARRIVALS:
             return
         at, offset = (np.array(column, dtype=float) for column in zip(*self._least, strict=True))
         at, offset = at - at[0], offset - offset[0]
         first, last = np.array_split(np.arange(at.size), 2)
         low, high = (part[np.argmin(offset[part] - self.rate * at[part])] for part in (first, last))
-        self.rate = float(np.clip((offset[high] - offset[low]) / (at[high] - at[low]), -FASTEST, FASTEST))
+        self.rate = float(
+            np.clip((offset[high] - offset[low]) / (at[high] - at[low]), -LARGEST_RATE_ERROR, LARGEST_RATE_ERROR)
+        )

@@ -7,7 +7,7 @@ import struct
 
 END = b"\x00"
 """Ends a frame, and occurs nowhere in it."""
-LONGEST = 256
+LONGEST_FRAME = 256
 """Most bytes of a frame as sent; more without an end is noise, and is dropped."""
 RUN = 254
 """Most bytes between two codes of COBS."""
@@ -67,7 +67,7 @@ class Frames:
         """Payloads of the frames that end in `data`."""
         self._waiting += data
         *frames, rest = self._waiting.split(END)
-        if len(rest) > LONGEST:
+        if len(rest) > LONGEST_FRAME:
             self.damaged += 1
             rest = bytearray()
         self._waiting = bytearray(rest)
@@ -75,7 +75,7 @@ class Frames:
         return [payload for payload in payloads if payload is not None]
 
     def _payload(self, frame: bytes) -> bytes | None:
-        data = unstuffed(frame) if len(frame) <= LONGEST else None
+        data = unstuffed(frame) if len(frame) <= LONGEST_FRAME else None
         if data is None or len(data) < 3 or checksum(data[:-2]) != struct.unpack("<H", data[-2:])[0]:
             self.damaged += 1
             return None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 COMMAND = 0x11
 """First byte of a command: kind 1 of version 1."""
-STATE = 0x21
+STATE_KIND = 0x21
 """First byte of a state: kind 2 of version 1."""
 NUMBERS = 0x10000
 """Sequence numbers wrap at this."""
@@ -53,7 +53,7 @@ class State:
         """The payload."""
         flags = _ENABLED * self.enabled | _TIMED_OUT * self.timed_out
         whole = (self.number % NUMBERS, self.ticks % TICKS, self.boots % 256, flags, self.answered % NUMBERS)
-        return _STATE.pack(STATE, *whole, self.hall_voltage, self.duty, self.supply_voltage)
+        return _STATE.pack(STATE_KIND, *whole, self.hall_voltage, self.duty, self.supply_voltage)
 
 
 def command(payload: bytes) -> Command | None:
@@ -66,7 +66,7 @@ def command(payload: bytes) -> Command | None:
 
 def state(payload: bytes) -> State | None:
     """The state in a payload; None where it holds none."""
-    if len(payload) != _STATE.size or payload[0] != STATE:
+    if len(payload) != _STATE.size or payload[0] != STATE_KIND:
         return None
     _, number, ticks, boots, flags, answered, hall_voltage, duty, supply = _STATE.unpack(payload)
     enabled, timed_out = bool(flags & _ENABLED), bool(flags & _TIMED_OUT)

@@ -10,7 +10,7 @@ from types import TracebackType
 
 from pierburg_ros.errors import InputError
 
-LARGEST = 4096
+LARGEST_READ = 4096
 """Most bytes of one reading."""
 
 
@@ -48,7 +48,7 @@ class Port:
         try:
             if not select.select([self._file], [], [], patience)[0]:
                 return b""
-            data = os.read(self._file, LARGEST)
+            data = os.read(self._file, LARGEST_READ)
         except OSError as error:
             raise Unplugged(str(error.strerror)) from error
         if not data:

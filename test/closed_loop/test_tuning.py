@@ -11,7 +11,7 @@ from pierburg_ros.closed_loop.goal import Goal
 from pierburg_ros.closed_loop.judgement import judge
 from pierburg_ros.closed_loop.plants import HOT, NOMINAL, STICKY, plant_set
 from pierburg_ros.closed_loop.report import BEGIN, END, insert, report
-from pierburg_ros.closed_loop.tune import BEYOND, MARGIN, STATED, Task, shortfall, tune
+from pierburg_ros.closed_loop.tune import BEYOND, GOAL_MARGIN, STATED, Task, shortfall, tune
 from pierburg_ros.control import Settings
 
 FEW = {name: plant_set()[name] for name in (*STATED, "sensor lag")}
@@ -25,9 +25,9 @@ def test_nothing_is_short_of_a_goal_that_is_met_with_margin():
 def test_shortfall_is_the_logarithm_of_the_excess():
     limits = np.ones((16, 4))
     doubled = limits.copy()
-    doubled[:, 0] = 2.0 * MARGIN
+    doubled[:, 0] = 2.0 * GOAL_MARGIN
     assert shortfall([doubled], limits) - shortfall([limits * 0], limits) == pytest.approx(
-        math.log(2.0) + BEYOND * (3.0 + 2.0 * MARGIN) + 3.0 * math.log(1.0 / MARGIN)
+        math.log(2.0) + BEYOND * (3.0 + 2.0 * GOAL_MARGIN) + 3.0 * math.log(1.0 / GOAL_MARGIN)
     )
 
 

@@ -1,4 +1,4 @@
-"""docs/control.md says what the code says: the plants as judged, the comparison as it is written."""
+"""docs/control.md and its data say what the code says: the plants as judged, the comparison as it is written."""
 
 import re
 from importlib.util import module_from_spec, spec_from_file_location
@@ -10,21 +10,23 @@ import pytest
 from pierburg_ros.closed_loop.course import STEPS
 from pierburg_ros.closed_loop.designs import DESIGNS
 from pierburg_ros.closed_loop.goal import Goal
-from pierburg_ros.closed_loop.judgement import PLACE, SEEDS, Judgement
+from pierburg_ros.closed_loop.judgement import NOISE_SEEDS, PLACE, Judgement
 from pierburg_ros.closed_loop.plants import plant_set
 from pierburg_ros.closed_loop.report import BEGIN, END, plants_table, report
 
 DOCUMENT = Path(__file__).parents[2] / "docs/control.md"
+MEASUREMENTS = DOCUMENT.parent / "developers/measurements.md"
+COMPARISON = DOCUMENT.parent / "developers/data/controllers.txt"
 CELL = re.compile(r"(?<=\| )[-+.\de]+( of (?P<goals>\d+)| \([.\d]+\)| \(missed\))?(?= \|)")
 
 
 def test_the_plants_are_those_judged_today_with_their_values():
-    assert plants_table(plant_set()) in DOCUMENT.read_text(encoding="utf-8")
+    assert plants_table(plant_set()) in COMPARISON.read_text(encoding="utf-8")
 
 
 def test_the_comparison_names_plants_steps_and_columns_as_the_report_does():
     """Written by a run of hours: its results are masked, all else is to the letter what such a run writes."""
-    document = DOCUMENT.read_text(encoding="utf-8")
+    document = COMPARISON.read_text(encoding="utf-8")
     kept = document[document.index(BEGIN) + len(BEGIN) : document.index(END)]
     plants, random = plant_set(), np.random.default_rng(1)
     judgements = [
@@ -32,7 +34,7 @@ def test_the_comparison_names_plants_steps_and_columns_as_the_report_does():
             name,
             design.settings(np.mean(design.bounds, axis=1)),
             plants,
-            {plant: random.uniform(0.5, 1.0, (len(SEEDS), len(STEPS), len(PLACE))) for plant in plants},
+            {plant: random.uniform(0.5, 1.0, (len(NOISE_SEEDS), len(STEPS), len(PLACE))) for plant in plants},
         )
         for name, design in DESIGNS.items()
     ]
@@ -45,18 +47,23 @@ def masked(tables: str) -> str:
     return CELL.sub(lambda cell: f"# of {cell['goals']}" if cell["goals"] else "#", tables.replace(found, ""))
 
 
-def corrected_loops():
-    """The script that writes the table of corrected loops."""
-    spec = spec_from_file_location("corrected_loops", DOCUMENT.parent / "corrected_loops.py")
+def script_of(name: str):
+    """A script of the documentation, by its name."""
+    spec = spec_from_file_location(name, DOCUMENT.parent / f"{name}.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
+def test_the_table_of_the_page_is_that_of_the_comparison():
+    document = DOCUMENT.read_text(encoding="utf-8")
+    assert document == script_of("controllers").written(document), "run python docs/controllers.py"
+
+
 def test_the_corrected_loops_are_those_that_the_script_judges():
     """Its searches take minutes: plants, columns, and one row that needs no search, are held against the page."""
-    script = corrected_loops()
-    text = DOCUMENT.read_text(encoding="utf-8")
+    script = script_of("corrected_loops")
+    text = MEASUREMENTS.read_text(encoding="utf-8")
     table = text[text.index(script.BEGIN) : text.index(script.END)]
     header, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.split("\n|")[1:]]
     assert tuple(header) == script.HEADER

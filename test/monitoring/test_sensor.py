@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.monitoring.movements import BLOCK, Blocks, Samples
+from pierburg_ros.monitoring.movements import BLOCK_SAMPLES, Blocks, Samples
 from pierburg_ros.monitoring.sensor import SensorWatch
 from pierburg_ros.plant import Model
 
@@ -34,7 +34,7 @@ def test_a_healthy_sensor_at_rest_is_left_alone():
 def test_a_frozen_sensor_is_named_and_a_coarse_one_is_not():
     angle = noise(20.0)
     angle[7500:] = angle[7500]
-    assert "frozen" in names(angle)[7500 // BLOCK + 5]
+    assert "frozen" in names(angle)[7500 // BLOCK_SAMPLES + 5]
     coarse = np.round(noise(20.0) / 0.01) * 0.01
     assert not any("frozen" in found for found in names(coarse))
 
@@ -43,8 +43,8 @@ def test_noise_that_trebles_is_named_within_a_second():
     angle = noise(30.0)
     angle[10_000:] *= 3.0
     found = names(angle)
-    assert not any("noise" in each for each in found[: 10_000 // BLOCK])
-    assert "noise" in found[10_000 // BLOCK + 20]
+    assert not any("noise" in each for each in found[: 10_000 // BLOCK_SAMPLES])
+    assert "noise" in found[10_000 // BLOCK_SAMPLES + 20]
 
 
 def test_single_jumps_are_passed_over_and_repeated_ones_named():
@@ -60,8 +60,8 @@ def test_an_offset_shows_at_the_stop(offset):
     angle = noise(30.0)
     angle[9000:] += offset
     found = names(angle)
-    assert not any("offset" in each for each in found[: 9000 // BLOCK])
-    assert any("offset" in each for each in found[10_000 // BLOCK :])
+    assert not any("offset" in each for each in found[: 9000 // BLOCK_SAMPLES])
+    assert any("offset" in each for each in found[10_000 // BLOCK_SAMPLES :])
 
 
 def test_an_angle_that_stays_while_the_duty_drives_the_shaft_is_named():
@@ -69,8 +69,8 @@ def test_an_angle_that_stays_while_the_duty_drives_the_shaft_is_named():
     duty = np.full(angle.size, 0.15)
     duty[8000:] = 0.6
     found = names(angle, duty)
-    assert not any(found[: 8000 // BLOCK])
-    assert "stuck" in found[8000 // BLOCK + 3]
+    assert not any(found[: 8000 // BLOCK_SAMPLES])
+    assert "stuck" in found[8000 // BLOCK_SAMPLES + 3]
 
 
 def test_nothing_is_said_before_the_usual_noise_is_known():

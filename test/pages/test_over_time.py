@@ -5,7 +5,7 @@ import pytest
 
 from pierburg_ros.pages.over_time import BUCKETS, thinned
 from pierburg_ros.pages.page import inert, stored
-from pierburg_ros.pages.room import ROOM, page_signals
+from pierburg_ros.pages.room import SIGNAL_ROOM, page_signals
 
 TIME = 0.002 * np.arange(30000)
 
@@ -26,7 +26,7 @@ def test_signals_fit_into_a_page_with_their_peaks(minutes):
     measured[777] = 9.0
     others = {f"other-{n}": np.zeros(time.size) for n in range(8)}
     signals = page_signals([{"time": time, "measured": measured, **others}], ("measured",))
-    assert sum(len(stored(values, name == "0/time")["data"]) for name, values in signals.items()) <= ROOM
+    assert sum(len(stored(values, name == "0/time")["data"]) for name, values in signals.items()) <= SIGNAL_ROOM
     assert signals["0/measured"].max() == 9.0
     assert (signals["0/time"].size == time.size) == (minutes == 1)
 

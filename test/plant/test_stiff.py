@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.gear.shaft import settled
-from pierburg_ros.plant.motion.events import TOLERANCE
+from pierburg_ros.plant.motion.events import STEP_TOLERANCE
 from pierburg_ros.plant.signal_path import advance
 from pierburg_ros.plant.state import new_state
 from pierburg_ros.plant.torques.load import blurred
@@ -265,4 +265,4 @@ def test_a_jump_of_the_duty_while_the_shaft_creeps_is_as_exact_as_any_step(befor
     time = np.linspace(0.0, 0.002, 21)
     exact = solve_ivp(motion, (0.0, 0.002), [start, before], "LSODA", time, rtol=1e-12, atol=1e-14).y[0]
     hall = simulate(model, Inputs(np.array([0.0, 0.002]), np.full(2, duty)), time, start, before)
-    assert np.abs((hall - hall[0]) / SPAN - (exact - start)).max() < TOLERANCE * math.pi / 2.0
+    assert np.abs((hall - hall[0]) / SPAN - (exact - start)).max() < STEP_TOLERANCE * math.pi / 2.0

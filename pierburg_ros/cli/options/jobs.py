@@ -6,8 +6,6 @@ from typing import Annotated
 
 import typer
 
-from pierburg_ros.deadline import USUAL_BUDGET
-
 JobsOption = Annotated[
     int | None, typer.Option(min=1, show_default=False, help="Pieces of work at a time; default: one for each core.")
 ]
@@ -20,10 +18,11 @@ SchedulerOption = Annotated[
     ),
 ]
 BudgetOption = Annotated[
-    float | None,
+    str,
     typer.Option(
-        min=1.0,
-        show_default=f"{USUAL_BUDGET:g}",
-        help="Stop a diagnosis after this many seconds of an idle machine, with the best verdict yet.",
+        metavar="EFFORT",
+        help="What may be simulated, in usual efforts (2, 0.5): the same on every machine. Or at most so many seconds"
+        " of this one (60s). Then the best verdict yet is given.",
     ),
 ]
+"""As text, for `Budget.of`."""

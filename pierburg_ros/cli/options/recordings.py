@@ -40,6 +40,15 @@ TimeOption = Annotated[
     ),
 ]
 
+ExactOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--exact",
+        metavar="SIGNAL",
+        help="This signal is what it is read as, e.g. duty: look for no fault of it. May be given several times.",
+    ),
+]
+
 ResultsOption = Annotated[
     Path | None,
     typer.Option(show_default="results/COMMAND/RECORDING", help="Folder for the results."),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,12 +10,20 @@ from pierburg_ros.arrays import Flags
 from pierburg_ros.diagnosis.cleaning.hum import hum
 from pierburg_ros.diagnosis.cleaning.outliers import outliers
 from pierburg_ros.diagnosis.cleaning.saturation import saturated
-from pierburg_ros.estimation.data import Data, Omission
 from pierburg_ros.recording import Recording
-from pierburg_ros.recording.loss import spans_of
+from pierburg_ros.recording.loss import Span, spans_of
 
 APART = 5
 """Largest distance [samples] between left-out samples that belong to one span. Work: each span is an entry."""
+
+
+@dataclass(frozen=True)
+class Omission:
+    """A `span` [s] of the recording with this `number` that is left out, and why."""
+
+    number: int
+    span: Span
+    why: str
 
 
 @dataclass(frozen=True)
@@ -34,13 +41,6 @@ def cleaned(recording: Recording, number: int = 0) -> Cleaned:
     for clean in (_without_outliers, _without_saturation, _without_hum):
         found = clean(found, number)
     return found
-
-
-def said_of(recordings: Sequence[Cleaned], data: Data) -> Data:
-    """`data` of cleaned recordings with their omissions and remarks."""
-    omissions = tuple(omission for each in recordings for omission in each.omissions)
-    remarks = tuple(f"{each.recording.name}: {remark}" for each in recordings for remark in each.remarks)
-    return replace(data, left_out=(*data.left_out, *omissions), remarks=remarks)
 
 
 def _without_outliers(given: Cleaned, number: int) -> Cleaned:

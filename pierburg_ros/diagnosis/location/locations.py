@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.motion import Motion
+from pierburg_ros.diagnosis.motion import Motion
 from pierburg_ros.diagnosis.schema import Location
 
 LONG = 10.5

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.motion import INSTANT, Motion
+from pierburg_ros.diagnosis.motion import INSTANT, Motion
 from pierburg_ros.diagnosis.schema import Regime
 
 BINS = 24

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.actuators.wording import place, travel_factor, travel_title
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.missing_torque import missing_torque
-from pierburg_ros.diagnosis.evidence.motion import motion_of
-from pierburg_ros.diagnosis.result import Characteristic
-from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
+from pierburg_ros.diagnosis.found import Found
+from pierburg_ros.diagnosis.motion import motion_of
+from pierburg_ros.diagnosis.remains import Lacking, lacking
+from pierburg_ros.diagnosis.result import Characteristic, Points
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
@@ -27,35 +25,23 @@ from pierburg_ros.plant.torques import friction, load
 
 NODES = 121
 """Number of points of a curve. Work: one is drawn every five pixels."""
-POINTS = 1200
-"""Number of points of the recordings beside a curve, roughly. Work: more lie on top of each other."""
+BINS = 24
+"""Points of the recordings beside a curve. Chosen: each is the mean of a twenty-fourth of the samples."""
+ALIKE = 6.0
+"""Neighbouring samples of the balance that count as one. Derived: so many are kept in a length of its filter."""
 
 
-@dataclass(frozen=True)
-class Lacking:
-    """The load torque [N.m] that the final model lacks while the shaft moves, at angle [rad] and velocity [rad/s]."""
-
-    angle: Signal
-    velocity: Signal
-    torque: Signal
-
-
-def characteristics(found: Found, conclusion: Conclusion) -> tuple[Characteristic, ...]:
+def characteristics(found: Found) -> tuple[Characteristic, ...]:
     """The laws of the actuator and its sensor; none for a sensor of speed, which shows no angle."""
     if found.data.actuator.quantity == "speed":
         return ()
-    models = {
-        "nominal": conclusion.nominal.model,
-        "recalibrated": conclusion.recalibrated.model,
-        "final": conclusion.model,
-    }
-    run, own = found.data.longest, found.data.scales
-    missing = missing_torque(found.data, run, conclusion.model)
-    lacking = Lacking(missing.angle * own.angle, missing.velocity * own.angle / own.time, missing.torque * own.torque)
+    choice = found.choice
+    models = {"nominal": choice.described.model, "recalibrated": choice.estimated.model, "final": found.model}
+    at, run = lacking(found.written, found.inferred.balance), found.data.runs[0]
     motion = motion_of(run, found.data.actuator, found.data.noise)
-    residual = (run.measured - run.simulated(conclusion.model, conclusion.final.switch)) * found.data.angle_per_unit
-    laws = [_friction(models, lacking), _load(models, lacking, motion.angle), _sensor(models, motion.angle, residual)]
-    return (*laws, *_plays(conclusion.model))
+    residual = found.of_run(found.residual(found.written), run) * found.data.per_unit
+    laws = [_friction(models, at), _load(models, at, motion.angle), _sensor(models, motion.angle, residual)]
+    return (*laws, *_plays(found.model))
 
 
 def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
@@ -70,7 +56,7 @@ def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
     inside = np.abs(missing.velocity) <= fastest
     known = ~np.isnan(velocity)
     law = np.interp(missing.velocity[inside], velocity[known], curves["final"][1][known])
-    points = _some(missing.velocity[inside], law + missing.torque[inside])
+    points = binned(missing.velocity[inside], law + np.sign(missing.velocity[inside]) * missing.own[inside])
     return Characteristic(
         "friction",
         f"friction at {place(middle, middle, motion)}",
@@ -108,7 +94,7 @@ def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Chara
     motion = models["final"].actuator.motion
     drawn = travel_factor(motion)
     curves = {name: (drawn * nodes, load_torque(model, nodes)) for name, model in models.items()}
-    points = _some(drawn * missing.angle, load_torque(models["final"], missing.angle) + missing.torque)
+    points = binned(drawn * missing.angle, load_torque(models["final"], missing.angle) + missing.own)
     title = f"load that closes [{unit_of('N.m', motion)}]"
     return Characteristic("load", "spring and load", travel_title(motion), title, curves, points)
 
@@ -132,14 +118,14 @@ def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Cha
         true = decoded(model, values)
         curves[name] = (drawn * true, drawn * (shown - true))
     true = decoded(final, _values_at(nominal, angle))
-    x, y = _some(drawn * true, drawn * (angle - true + residual))
+    points = binned(drawn * true, drawn * (angle - true + residual))
     return Characteristic(
         "sensor",
         "sensor: shown less true place",
         f"true {travel_title(motion)}",
         travel_title(motion).replace("angle", "deviation").replace("position", "deviation"),
         curves,
-        (x, y),
+        points,
     )
 
 
@@ -182,11 +168,12 @@ def _travel(model: Model, angle: Signal) -> tuple[float, float]:
     )
 
 
-def _some(x: Signal, y: Signal) -> tuple[Signal, Signal]:
-    """About `POINTS` points, fewer than twice as many, evenly taken, without the outermost hundredth on either side."""
-    if x.size == 0:
-        return x, y
-    low, high = np.quantile(y, [0.01, 0.99])
-    kept = np.flatnonzero((y >= low) & (y <= high))
-    kept = kept[:: max(1, kept.size // POINTS)]
-    return x[kept], y[kept]
+def binned(x: Signal, y: Signal) -> Points:
+    """The means of `y` over bins of about equal numbers of samples along `x`, with twice the error of each mean."""
+    if x.size < 2 * BINS:
+        return Points(x[:0], y[:0], y[:0])
+    order = np.argsort(x, kind="stable")
+    parts = [(x[part], y[part]) for part in np.array_split(order, BINS)]
+    error = [2.0 * float(np.std(values)) / math.sqrt(max(values.size / ALIKE, 1.0)) for _, values in parts]
+    means = [(float(np.mean(place)), float(np.mean(values))) for place, values in parts]
+    return Points(np.array([each[0] for each in means]), np.array([each[1] for each in means]), np.array(error))

@@ -2,82 +2,72 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.diagnosis.evidence.motion import motion_of
+from pierburg_ros.diagnosis.cleaning.cleaned import Cleaned
+from pierburg_ros.diagnosis.found import Found, when_of
+from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.report.characteristics import characteristics
-from pierburg_ros.diagnosis.report.tried import OFF, rivals
+from pierburg_ros.diagnosis.report.tried import OFF, rivals, rms
 from pierburg_ros.diagnosis.result import Exhibits, Tried, View
-from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.estimation.data import Data
-from pierburg_ros.estimation.run import Run, Switch
 from pierburg_ros.inference.coordinates import without_effects
-from pierburg_ros.plant import Model
-
-Simulated = tuple[Model, Switch | None]
-"""A model, and the one that takes over in the middle of a recording if there is one."""
+from pierburg_ros.inference.data import Run
 
 
-def exhibits(found: Found, conclusion: Conclusion) -> Exhibits:
+def exhibits(found: Found, cleaned: Sequence[Cleaned]) -> Exhibits:
     """Every recording, the rivals of the chosen explanation, and the laws of the models."""
-    held = rivals(found, conclusion)
-    switch = conclusion.final.switch
-    models: dict[str, Simulated] = {
-        "nominal": (conclusion.nominal.model, None),
-        "recalibrated": (conclusion.recalibrated.model, None),
-        "final": (conclusion.model, switch),
-    }
-    off = switched_off(found.data, conclusion)
-    models |= {row.key: (row_model, None) for row, row_model in off}
-    models |= {row.key: (fit.model, fit.switch) for row, fit in held[1:] if row.key}
-    numbers = list(dict.fromkeys(run.number for run in found.data.runs))
-    views = tuple(_view(found.data, number, models) for number in numbers)
-    tried = (*(row for row, _ in held[:1]), *(row for row, _ in off), *(row for row, _ in held[1:]))
-    return Exhibits(views, tried, characteristics(found, conclusion))
+    rows, choice = rivals(found), found.choice
+    errors = {"nominal": found.residual(choice.described), "recalibrated": found.residual(choice.estimated)}
+    errors["final"] = found.residual(found.written)
+    off = switched_off(found)
+    errors |= {row.key: residual for row, residual in off}
+    errors |= {row.key: found.residual(fit) for row, fit in rows if row.key and row.key not in errors}
+    views = tuple(_view(found, run, errors, each) for run, each in zip(found.data.runs, cleaned, strict=True))
+    tried = (*(row for row, _ in rows[:1]), *(row for row, _ in off), *(row for row, _ in rows[1:]))
+    return Exhibits(views, tried, characteristics(found))
 
 
-def switched_off(data: Data, conclusion: Conclusion) -> list[tuple[Tried, Model]]:
-    """For each effect of the final model: the model with this effect switched off, and all else unchanged."""
-    rows = []
-    for effect in conclusion.final.explanation.effects:
-        model = without_effects(conclusion.model, [effect])
-        residual = data.residual(model, conclusion.final.switch) * data.noise
-        train, test = (
-            float(np.sqrt(np.mean(residual[samples] ** 2))) if samples.any() else None
-            for samples in (data.train, data.test)
+def switched_off(found: Found) -> list[tuple[Tried, Signal]]:
+    """For each effect of the model that is handed out: what it leaves without this effect, all else unchanged."""
+    rows, data, own = [], found.data, found.written
+    for effect in own.explanation.effects:
+        model = without_effects(own.model, [effect])
+        after = own.after and without_effects(own.after, [effect])
+        residual = found.shown.residual(model, after, when_of(own)) * data.noise
+        unseen = residual[data.test]
+        key = f"{OFF}{effect}"
+        row = Tried(
+            key,
+            own.size - 1,
+            "rejected",
+            rms(residual[data.train]),
+            rms(unseen) if unseen.size else None,
+            math.nan,
+            key,
         )
-        size = conclusion.final.explanation.size - 1
-        rows.append(
-            (Tried(f"{OFF}{effect}", size, "rejected", train or 0.0, test, float("nan"), f"{OFF}{effect}"), model)
-        )
+        rows.append((row, residual))
     return rows
 
 
-def _view(data: Data, number: int, models: dict[str, Simulated]) -> View:
-    """One recording: its runs one after another."""
-    runs = [run for run in data.runs if run.number == number]
-    motions = [motion_of(run, data.actuator, data.noise) for run in runs]
+def _view(found: Found, run: Run, errors: Mapping[str, Signal], cleaned: Cleaned) -> View:
+    """One recording with the error of every model."""
+    motion = motion_of(run, found.data.actuator, found.data.noise)
+    first = float(cleaned.recording.time[0])
+    spans = [
+        (start - first, end - first, "the input is unknown there") for start, end in cleaned.recording.unknown_input
+    ]
+    spans += [(each.span[0] - first, each.span[1] - first, each.why) for each in cleaned.omissions]
     return View(
-        name=runs[0].name,
-        time=_joined([run.time for run in runs]),
-        measured=_joined([run.measured for run in runs]),
-        command=_joined([_command(run) for run in runs]),
-        angle=_joined([motion.angle for motion in motions]),
-        velocity=_joined([motion.velocity for motion in motions]),
-        errors={
-            key: _joined([run.measured - run.simulated(*simulated) for run in runs])
-            for key, simulated in models.items()
-        },
-        left_out=tuple((*each.span, each.why) for each in data.left_out if each.number == number),
+        name=run.name,
+        time=run.time,
+        measured=run.measured,
+        command=run.in_force,
+        angle=motion.angle,
+        velocity=motion.velocity,
+        errors={key: np.asarray(found.of_run(residual, run)) for key, residual in errors.items()},
+        left_out=tuple(spans),
     )
-
-
-def _command(run: Run) -> Signal:
-    place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
-    return np.asarray(run.inputs.command[place])
-
-
-def _joined(parts: list[Signal]) -> Signal:
-    return np.concatenate(parts)

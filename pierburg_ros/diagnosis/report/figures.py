@@ -150,7 +150,9 @@ def law_figure(law: Characteristic) -> go.Figure:
     """A law of each model, with points from the recordings around the final one."""
     plot = go.Figure()
     if law.points is not None:
-        plot.add_trace(_points(*law.points, "what the recording says", "measured", 0.35))
+        bars = {"type": "data", "array": law.points.error, "thickness": 1, "width": 0}
+        shown = _points(law.points.x, law.points.y, "what the recordings say, 95 %", "measured", 0.9)
+        plot.add_trace(shown.update(error_y=bars, marker={"size": 5}))
     for key, (x, y) in law.curves.items():
         plot.add_trace(_line(x, y, MEANINGS[key], key, {"nominal": "dot", "recalibrated": "dash"}.get(key, "solid")))
     plot.update_xaxes(title_text=law.x).update_yaxes(title_text=law.y)

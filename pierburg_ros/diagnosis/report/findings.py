@@ -1,25 +1,25 @@
-"""The conclusion in the terms of diagnosis.json."""
+"""What was found, in the terms of diagnosis.json."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.gauge import in_ratio
 from pierburg_ros.arrays import Flags, Signal
-from pierburg_ros.diagnosis.evidence import quality
-from pierburg_ros.diagnosis.evidence.motion import motion_of
-from pierburg_ros.diagnosis.limits.limits import Limit, Limits
+from pierburg_ros.diagnosis import quality, remains
+from pierburg_ros.diagnosis.cleaning.cleaned import Cleaned
+from pierburg_ros.diagnosis.found import Found
+from pierburg_ros.diagnosis.limits import Limit
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
 from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
-from pierburg_ros.diagnosis.remainder.resemblance import resemblance
-from pierburg_ros.diagnosis.remainder.shape import Shape
+from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.report import words
-from pierburg_ros.diagnosis.report.horizons import horizons
-from pierburg_ros.diagnosis.report.tried import distinct, identifier, statuses
+from pierburg_ros.diagnosis.report.tried import identifier, statuses
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -28,175 +28,200 @@ from pierburg_ros.diagnosis.schema import (
     Diagnosis,
     Doubted,
     Effect,
+    Effort,
     Errors,
     Estimate,
-    Evidence,
     Excluded,
     FitQuality,
+    Horizon,
     Location,
     NotTestable,
     Regime,
     Remaining,
-    ResidualTorque,
     RuledOut,
-    TorqueOverTime,
+    Verdict,
 )
-from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import gain
-from pierburg_ros.diagnosis.search.weighing import Weight
-from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.diagnosis.verdict.shares import Shares
-from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS
-from pierburg_ros.estimation.data import Data, rms
-from pierburg_ros.estimation.discrepancy import Kalman
-from pierburg_ros.estimation.likelihood import SIGNIFICANT
-from pierburg_ros.estimation.run import Run, Switch
-from pierburg_ros.inference.coordinates import without_effects
-from pierburg_ros.inference.explanation import AFTER, WHEN, Variant
-from pierburg_ros.plant import Model
+from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
+from pierburg_ros.inference.choice import Name, Score, strongest, taken
+from pierburg_ros.inference.evidence import SIGNIFICANT
+from pierburg_ros.inference.explanation import AFTER, WHEN
+from pierburg_ros.inference.fit import Fit, adequate, rms_of
+
+HORIZONS = (0.1, 0.3, 1.0, 3.0)
+"""Times over which a model predicts [s]. Given: the times that the report promises."""
+TOLD = 30
+"""Most explanations that are listed. Chosen: more help no reader."""
 
 
-def document(
-    found: Found,
-    conclusion: Conclusion,
-    parts: Shares,
-    limits: Limits,
-    marks: Mapping[str, float],
-    stopped: bool = False,
-) -> Diagnosis:
-    """The whole document, with the `marks` of effects by id; `stopped`: the search had to end before it was done."""
-    data, actuator = found.data, found.data.actuator
-    named, parameters_found = effects(conclusion, parts), parameters(found, conclusion)
-    fit, changed, hidden = fit_quality(found, conclusion), changes(conclusion), not_testable(marks)
-    short = quality.limits_of(data.runs, actuator, data.noise)
-    text = words.summary(conclusion.verdict, named, parameters_found, changed, fit, actuator.unit, stopped)
-    unsure = doubted(conclusion)
-    text = words.unsure({each.id: each.confidence or 0.0 for each in unsure}, text)
-    text = words.needless(found.needless if conclusion.verdict == "unexplained" else (), text)
-    text = words.remarked(data.remarks, words.warned(data, conclusion.verdict, words.provisional(text, stopped)))
-    places, ranges = located(data, conclusion)
+def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
+    """The whole document on recordings that were `cleaned`."""
+    data = found.data
+    actuator, runs = data.actuator, data.runs
+    named, parameters_found = effects(found), parameters(found)
+    fit, changed, hidden = fit_quality(found), changes(found), not_testable(found)
+    short = quality.limits_of(runs, actuator, data.noise)
+    places, ranges = located(found)
+    left = remaining(found)
+    remarks = [*data.warnings, *(f"{each.recording.name}: {remark}" for each in cleaned for remark in each.remarks)]
+    unsure = doubted(found)
+    text = words.summary(found, named, parameters_found, changed, fit, left, unsure)
     return Diagnosis(
-        schema=2,
-        recordings=list({run.number: run.name for run in data.runs}.values()),
+        schema=3,
+        recordings=list({run.number: run.name for run in runs}.values()),
         quantity=actuator.quantity,
         unit=actuator.unit,
         input=actuator.input,
         motion=actuator.motion,
-        verdict=conclusion.verdict,
-        summary=words.cautioned(short, text),
-        stopped=stopped,
+        verdict=verdict(found),
+        summary=" ".join([*remarks, words.cautioned(short, text)]),
+        model_of=found.model_of,
+        effort=effort(found),
         effects=named,
         doubted=unsure,
+        re_estimated_share=found.shares.re_estimated,
         parameters=parameters_found,
         changes=changed,
         locations=places,
         regimes=ranges,
         fit=fit,
-        candidates=candidates(found, conclusion),
+        candidates=candidates(found),
         not_testable=hidden,
-        ruled_out=[ruled_out(limit, actuator) for limit in limits.found],
-        remaining=remaining(data, conclusion, parts),
-        excluded=excluded(data),
+        ruled_out=[ruled_out(each.limit, found) for each in found.seen.values() if each.limit is not None],
+        remaining=left,
+        excluded=excluded(cleaned),
         cannot_act=cannot_act(actuator),
-        residual_torque=residual_torque(conclusion.shape),
-        data_quality=quality.data_quality(data.runs, actuator, data.noise, (*data.warnings, *data.remarks)),
-        advice=[
-            *words.advice(conclusion.verdict, named, parameters_found, hidden, short, actuator.has_stops),
-            *words.untested(limits.untested),
-        ],
+        residual_torque=remains.document(found.model, found.lacking, left.looks_like),
+        data_quality=quality.data_quality(runs, actuator, data.noise, remarks),
+        advice=words.advice(found, named, parameters_found, hidden, short),
     )
 
 
-def effects(conclusion: Conclusion, parts: Shares) -> list[Effect]:
+def verdict(found: Found) -> Verdict:
+    """The verdict of the choice; steps of a converter are an effect too."""
+    own = found.choice.verdict
+    return "missing_physics" if found.step and own in ("consistent", "parameter_drift") else own
+
+
+def effort(found: Found) -> Effort:
+    """How much was simulated, of how much that was allowed."""
+    own = found.inferred.effort
+    return Effort(simulations=own.simulations, budget=own.budget.efforts, stopped_by=own.stopped_by)
+
+
+def effects(found: Found) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    final, unit = conclusion.final, conclusion.final.model.actuator.shown
-    found = []
-    for variant in final.explanation.variants:
-        declared = EFFECT[variant.effect]
-        values = {name: final.model.values[f"{variant.effect}.{name}"] for name in declared.names}
-        parameters = {
-            name: _estimate(conclusion, f"{variant.effect}.{name}", values[name], unit(declared.parameter(name).unit))
-            for name in declared.names
-            if name in variant.free or values[name] != 0.0
+    own, unit, listed = found.choice.handed, found.data.actuator.shown, []
+    for variant in own.explanation.variants:
+        declared, name = EFFECT[variant.effect], found.choice.names[variant.effect]
+        values = {each: own.values[f"{variant.effect}.{each}"] for each in declared.names}
+        shown = {
+            each: _estimate(found, f"{variant.effect}.{each}", values[each], unit(declared.parameter(each).unit))
+            for each in declared.names
+            if each in variant.free or values[each] != 0.0
         }
-        ties = ties_of(conclusion, variant)
-        support = conclusion.supports[variant.effect]
-        share = parts.effects.get(variant.effect)
-        found.append(
+        ties, share = ties_of(found, variant.effect), found.shares.effects.get(variant.effect)
+        listed.append(
             Effect(
                 id=variant.effect,
-                confidence=support.confidence,
-                parameters=parameters,
+                confidence=name.confidence,
+                parameters=shown,
                 indistinguishable_from=ties,
                 share=share.beside if share else None,
                 share_alone=share.alone if share else None,
-                evidence=_evidence(support.weight),
-                explanation=words.effect_explanation(
-                    variant.effect, parameters, ties, words.reason(support, conclusion.final.model.actuator.unit)
-                ),
+                explanation=words.effect_explanation(variant.effect, shown, ties, words.reason(name)),
             )
         )
-    return found
+    return listed + ([converter(found)] if found.step else [])
 
 
-def doubted(conclusion: Conclusion) -> list[Doubted]:
-    """The effects that are not probable enough to be named beside a remainder, the most probable first."""
-    found = [
+def converter(found: Found) -> Effect:
+    """The steps of a converter, seen in the samples themselves."""
+    declared = ROUNDING.parameters[0]
+    step = Estimate(value=found.step, unit=found.data.actuator.shown(declared.unit), ci95=None, identifiable=True)
+    shown = {declared.name: step}
+    text = words.effect_explanation(ROUNDING.id, shown, [], words.BY_GRID)
+    return Effect(id=ROUNDING.id, confidence=1.0, parameters=shown, explanation=text)
+
+
+def doubted(found: Found) -> list[Doubted]:
+    """Effects that are not named, the most probable first, with their values where they gain most."""
+    return [
         Doubted(
             id=effect,
-            confidence=weight.confidence,
-            indistinguishable_from=[list(names) for names in weight.instead],
-            evidence=_evidence(weight),
-            explanation=words.by_weight(weight),
+            confidence=name.confidence,
+            share=taken(found.choice.described, name.fit) if not adequate(found.choice.chosen) else None,
+            parameters={
+                each: Estimate(
+                    value=name.fit.values[f"{effect}.{each}"],
+                    unit=found.data.actuator.shown(EFFECT[effect].parameter(each).unit),
+                    ci95=None,
+                    identifiable=False,
+                )
+                for each in EFFECT[effect].names
+                if name.fit.values[f"{effect}.{each}"] != 0.0
+            },
+            explanation=words.reason(name),
         )
-        for effect, weight in conclusion.doubted.items()
+        for effect, name in worth_telling(found).items()
     ]
-    return sorted(found, key=lambda each: -(each.confidence or 0.0))
 
 
-def _evidence(weight: Weight | None) -> Evidence | None:
-    if weight is None or weight.apart is None:
-        return None
-    return Evidence(carried=weight.carried, explains=weight.explained, apart=weight.apart)
+def worth_telling(found: Found) -> dict[str, Name]:
+    """The doubted effects that anyone would want to know of."""
+    tied = {name for several in found.choice.ties.values() for names in several for name in names}
+    return {
+        effect: name for effect, name in found.choice.doubted.items() if name.confidence > 0.01 and effect not in tied
+    }
 
 
-def _estimate(conclusion: Conclusion, name: str, value: float, unit: str) -> Estimate:
-    known = conclusion.estimates.get(name)
+def _estimate(found: Found, name: str, value: float, unit: str) -> Estimate:
+    known = found.intervals.get(name)
     if known is None:
         return Estimate(value=value, unit=unit, ci95=None, identifiable=True)
-    return Estimate(value=known.value, unit=unit, ci95=(known.low, known.high), identifiable=known.identifiable)
+    return Estimate(
+        value=known.value,
+        unit=unit,
+        ci95=known.ci95,
+        identifiable=known.identifiable,
+        at_bound=known.at_bound,
+        tied_with=list(found.tied_with.get(name, ())),
+    )
 
 
-def ties_of(conclusion: Conclusion, quantity: str | Variant) -> list[list[str]]:
+def ties_of(found: Found, quantity: str) -> list[list[str]]:
     """The alternatives to a quantity of the chosen explanation."""
-    return [list(tie.instead) for tie in conclusion.alternatives if tie.quantity == quantity]
+    return [list(names) for names in found.choice.ties.get(quantity, ())]
 
 
-def parameters(found: Found, conclusion: Conclusion) -> dict[str, BaseParameter]:
+def parameters(found: Found) -> dict[str, BaseParameter]:
     """Every base parameter, and those of effects that the actuator always has.
 
-    Each has its nominal value, its value in the chosen explanation, and whether it drifted. Where a residual remains, a
-    parameter may be moved without being distinguished from its nominal value: that is no drift.
+    One has drifted if the chosen explanation changes it and its interval leaves out the value of the description.
     """
-    actuator = found.data.actuator
-    final = conclusion.final
-    result = {}
-    for name in dict.fromkeys((*actuator.parameters, *found.drifts)):
+    actuator, own = found.data.actuator, found.choice.handed
+    nominal, result = own.fitter.nominal, {}
+    for name in dict.fromkeys((*actuator.parameters, *found.inferred.free)):
         declared = actuator.parameters[name] if name in actuator.parameters else DECLARED[name]
-        known, nominal = conclusion.estimates.get(name), found.nominal.values[name]
-        told = known is None or not known.low <= nominal <= known.high
-        drifted = (name in final.explanation.drifted and told) or name == final.explanation.changed
-        identifiable = known.identifiable if known else name in conclusion.recalibrated.explanation.drifted
+        known, described = found.intervals.get(name), nominal.values[name]
+        moved = name in own.explanation.drifted and not _within(described, known.ci95 if known else None)
+        drifted = moved or name == own.explanation.changed
         result[name] = BaseParameter(
-            nominal=nominal,
-            value=final.model.values[name],
+            nominal=described,
+            value=own.model.values[name],
             unit=actuator.shown(declared.unit),
-            ci95=(known.low, known.high) if known else None,
-            identifiable=identifiable,
+            ci95=known.ci95 if known else None,
+            identifiable=known.identifiable if known else name in found.inferred.drifts,
             drifted=drifted,
-            indistinguishable_from=[*ties_of(conclusion, name), *_in_ratio(actuator, name)] if drifted else [],
+            indistinguishable_from=[*ties_of(found, name), *_in_ratio(actuator, name)] if drifted else [],
+            tied_with=list(found.tied_with.get(name, ())),
+            held=words.held(name, found),
+            at_bound=known.at_bound if known else False,
         )
     return result
+
+
+def _within(value: float, ends: tuple[float, float] | None) -> bool:
+    return ends is not None and ends[0] <= value <= ends[1]
 
 
 def _in_ratio(actuator: Actuator, name: str) -> list[list[str]]:
@@ -205,93 +230,120 @@ def _in_ratio(actuator: Actuator, name: str) -> list[list[str]]:
     return [list(fixed)] if fixed else []
 
 
-def changes(conclusion: Conclusion) -> list[Change]:
+def changes(found: Found) -> list[Change]:
     """The parameter that changed in the middle of the recording, if one did, and the interval of the moment."""
-    name = conclusion.final.explanation.changed
+    own = found.choice.handed
+    name = own.explanation.changed
     if name is None:
         return []
-    values, known = conclusion.final.values, conclusion.estimates.get(name + WHEN)
-    time, ends = (0.5 * (known.low + known.high), (known.low, known.high)) if known else (values[name + WHEN], None)
-    return [Change(parameter=name, time=time, time_ci95=ends, before=values[name], after=values[name + AFTER])]
-
-
-def fit_quality(found: Found, conclusion: Conclusion) -> FitQuality:
-    """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has used."""
-    data = found.data
-
-    def errors(samples: Flags) -> Errors:
-        return Errors(
-            nominal_rmse=rmse(data, samples, conclusion.nominal.model),
-            recalibrated_rmse=rmse(data, samples, conclusion.recalibrated.model),
-            final_rmse=rmse(data, samples, conclusion.model, conclusion.final.switch),
+    values, known = own.values, found.intervals.get(name + WHEN)
+    ends = known.ci95 if known else None
+    return [
+        Change(
+            parameter=name, time=values[name + WHEN], time_ci95=ends, before=values[name], after=values[name + AFTER]
         )
-
-    models = [
-        (conclusion.nominal.model, None),
-        (conclusion.recalibrated.model, None),
-        (conclusion.model, conclusion.final.switch),
     ]
+
+
+def fit_quality(found: Found) -> FitQuality:
+    """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has used."""
+    data, choice = found.data, found.choice
+    errors = [found.residual(fit) for fit in (choice.described, choice.estimated, found.written)]
+
+    def on(samples: Flags) -> Errors:
+        nominal, recalibrated, final = (rms(each[samples]) for each in errors)
+        return Errors(nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final)
+
     return FitQuality(
-        noise_floor=data.noise,
-        training=errors(data.train),
-        validation=errors(data.test),
-        horizons=horizons(data, models),
+        noise_floor=data.noise, training=on(data.train), validation=on(data.test), horizons=horizons(found)
     )
 
 
-def rmse(data: Data, samples: Flags, model: Model, switch: Switch | None = None) -> float | None:
-    """Root mean squared error on some samples, measured unit; None where there are none."""
-    residual = data.residual(model, switch)[samples]
-    return rms(residual) * data.noise if residual.size else None
+def horizons(found: Found) -> list[Horizon]:
+    """Errors on unseen samples of the three models, pulled to the recordings with each of `HORIZONS`, and free.
+
+    A pulled simulation has forgotten what was its time constant ago, so it predicts about that far.
+    """
+    listed, data = [], found.data
+    for after in (*HORIZONS, math.inf):
+        fitter = found.written.fitter.pulled(after)
+        errors = []
+        for fit in (found.choice.described, found.choice.estimated, found.written):
+            when = fit.fitter.models(fit.explanation, fit.values)[2]
+            errors.append(rms(fitter.residual(fit.model, fit.after, when)[data.test] * data.noise))
+        nominal, recalibrated, final = errors
+        listed.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))
+    return listed
 
 
-def candidates(found: Found, conclusion: Conclusion, most: int = 30) -> list[Candidate]:
-    """The explanations tried, each name once, the best first: error on test samples, evidence, status."""
-    data, chosen = found.data, conclusion.chosen
-    status = statuses(found, chosen)
-    return [
+def rms(residual: Signal) -> float | None:
+    """Root mean square; None where there are no samples."""
+    return float(np.sqrt(np.mean(np.square(residual)))) if residual.size else None
+
+
+def candidates(found: Found) -> list[Candidate]:
+    """The explanations that were fitted, each name once, the best on held-out samples first."""
+    choice, data = found.choice, found.data
+    score, status = Score.of(choice.fits), statuses(found)
+    best: dict[str, Fit] = {}
+    for fit in choice.fits:
+        best.setdefault(identifier(fit), fit)
+    listed = [
         Candidate(
-            id=identifier(fit),
-            validation_rmse=rmse(data, data.test, fit.model, fit.switch),
-            evidence=gain(conclusion.recalibrated, fit),
-            status=status[identifier(fit)],
+            id=name,
+            validation_rmse=_on(fit, data.test),
+            heldout_rmse=_on(fit, data.validation),
+            evidence=score.lack(choice.estimated.chi2) - score.lack(fit.chi2),
+            status=status[name],
         )
-        for fit in distinct(found, chosen)[:most]
+        for name, fit in best.items()
     ]
+    return sorted(listed, key=lambda each: each.heldout_rmse if each.heldout_rmse is not None else math.inf)[:TOLD]
 
 
-def not_testable(marks: Mapping[str, float]) -> list[NotTestable]:
+def _on(fit: Fit, samples: Flags) -> float | None:
+    return rms_of(fit, samples) if samples.any() else None
+
+
+def not_testable(found: Found) -> list[NotTestable]:
     """Effects that could act at a plausible strength without a mark in these recordings."""
     return [
-        NotTestable(id=effect, why=words.untestable(mark), record=EFFECT[effect].record)
-        for effect, mark in marks.items()
-        if mark < SIGNIFICANT
+        NotTestable(id=effect, why=words.untestable(each.mark), record=EFFECT[effect].record)
+        for effect, each in found.seen.items()
+        if each.mark < SIGNIFICANT
     ]
 
 
-def ruled_out(limit: Limit, actuator: Actuator) -> RuledOut:
-    """A strength that is excluded, with its unit."""
-    unit = actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
+def ruled_out(limit: Limit, found: Found) -> RuledOut:
+    """A strength that is excluded, with its unit; where something remains, it counts that."""
+    unit = found.data.actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
     side = {"above" if limit.above else "below": limit.value}
-    return RuledOut(id=limit.effect, parameter=limit.parameter, unit=unit, **side)
+    return RuledOut(
+        id=limit.effect,
+        parameter=limit.parameter,
+        unit=unit,
+        given="complete" if adequate(found.choice.chosen) else "residual",
+        **side,
+    )
 
 
-def remaining(data: Data, conclusion: Conclusion, parts: Shares) -> Remaining:
-    """The remainder of the first recording under the written model, as a share and in words."""
-    residual = data.residual(conclusion.model, conclusion.final.switch)
-    discrepancy = Kalman(data, data.train).most_likely(residual)
-    run = data.longest
-    left = run.measured - run.simulated(conclusion.model, conclusion.final.switch)
-    return Remaining(share=parts.remains, looks_like=resemblance(data, run, left, discrepancy))
+def remaining(found: Found) -> Remaining:
+    """What the chosen effects leave, as a share and in words."""
+    if adequate(found.choice.chosen):
+        return Remaining(share=found.shares.remains, looks_like="noise")
+    forms = remains.shapes(found.lacking)
+    return Remaining(share=found.shares.remains, looks_like=remains.in_words(forms, found.lacking), shapes=forms)
 
 
-def excluded(data: Data) -> list[Excluded]:
+def excluded(cleaned: Sequence[Cleaned]) -> list[Excluded]:
     """The spans of every recording that were left out."""
-    names = {run.number: run.name for run in data.runs}
-    return [
-        Excluded(start=each.span[0], end=each.span[1], why=f"{names.get(each.number, 'a recording')}: {each.why}")
-        for each in data.left_out
-    ]
+    listed = []
+    for each in cleaned:
+        name, first = each.recording.name, float(each.recording.time[0])
+        unknown = [(start, end, "the input is unknown there") for start, end in each.recording.unknown_input]
+        for start, end, why in (*unknown, *((*omission.span, omission.why) for omission in each.omissions)):
+            listed.append(Excluded(start=start - first, end=end - first, why=f"{name}: {why}"))
+    return listed
 
 
 def cannot_act(actuator: Actuator) -> list[CannotAct]:
@@ -300,43 +352,25 @@ def cannot_act(actuator: Actuator) -> list[CannotAct]:
     return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
 
 
-def located(data: Data, conclusion: Conclusion) -> tuple[list[Location], list[Regime]]:
-    """Windows and regimes of the first recording in which the mismatch concentrates; none where there is no mismatch.
+def located(found: Found) -> tuple[list[Location], list[Regime]]:
+    """Windows and regimes of the first recording in which the mismatch gathers; none where there is no mismatch.
 
-    Windows are where the named effects move the signal or, if none is named, where the error is.
+    The model with re-estimated parameters is pulled strongly there: an error shows where it arises, and not after it.
     """
-    if conclusion.verdict in ("consistent", "parameter_drift"):
+    if verdict(found) in ("consistent", "parameter_drift") or found.choice.verdict in ("consistent", "parameter_drift"):
         return [], []
-    run, final = data.longest, conclusion.final
-    motion = motion_of(run, data.actuator, data.noise)
-    residual = run.measured - run.simulated(conclusion.recalibrated.model)
-    mark = residual
-    if final.explanation.variants:
-        bare = without_effects(final.model, [variant.effect for variant in final.explanation.variants])
-        mark = run.simulated(final.model, final.switch) - run.simulated(bare)
-    found = windows(motion.time, mark**2, shortest=SHORTEST * data.scales.time)
-    return locations(motion, residual, found), regimes(motion, residual)
+    run, own = found.data.runs[0], found.choice.estimated
+    motion = motion_of(run, found.data.actuator, found.data.noise)
+    near = strongest(own.fitter).residual(own.model) * found.data.noise
+    residual = found.of_run(near, run)
+    shortest = SHORTEST * found.data.scales.time
+    placed = windows(motion.time, residual**2, shortest=shortest) if motion.time[-1] > 2.0 * shortest else []
+    return locations(motion, residual, placed), regimes(motion, residual)
 
 
-def residual_torque(shape: Shape | None) -> ResidualTorque | None:
-    """The remainder as a torque over angle and velocity, and over time; None where there is none."""
-    if shape is None or shape.model.residual_torque is None:
-        return None
-    grid = {key: np.asarray(values).tolist() for key, values in shape.model.residual_torque.items()}
-    time, torque = shape.over_time
-    return ResidualTorque(
-        **grid, shape=shape.words, over_time=TorqueOverTime(time=time.tolist(), torque=torque.tolist())
-    )
-
-
-def signals(run: Run, conclusion: Conclusion) -> dict[str, Signal]:
-    """Time [s], measured, command, and the simulations of a run by the three models, each (samples,)."""
-    place = np.maximum(np.searchsorted(run.inputs.time, run.time, side="right") - 1, 0)
-    return {
-        "time": run.time,
-        "measured": run.measured,
-        "command": run.inputs.command[place],
-        "nominal": run.simulated(conclusion.nominal.model),
-        "recalibrated": run.simulated(conclusion.recalibrated.model),
-        "final": run.simulated(conclusion.model, conclusion.final.switch),
-    }
+def signals(found: Found) -> dict[str, Signal]:
+    """Time [s], measured, command, and the simulations of the first recording by the three models, each (samples,)."""
+    run, choice = found.data.runs[0], found.choice
+    models = {"nominal": choice.described, "recalibrated": choice.estimated, "final": found.written}
+    simulated = {key: run.measured - found.of_run(found.residual(fit), run) for key, fit in models.items()}
+    return {"time": run.time, "measured": run.measured, "command": run.in_force, **simulated}

@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.report.places import places
 from pierburg_ros.diagnosis.report.tried import OFF, title
 from pierburg_ros.diagnosis.result import Result, Tried, View
 from pierburg_ros.diagnosis.schema import Diagnosis
-from pierburg_ros.estimation.likelihood import SIGNIFICANT, TIED
+from pierburg_ros.inference.evidence import SIGNIFICANT, TIED
 from pierburg_ros.pages.numbers import words
 from pierburg_ros.pages.over_time import OTHERS
 from pierburg_ros.pages.page import NOT_FILES, Plot, Sources, written

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pierburg_ros.audit import Fault
-from pierburg_ros.diagnosis.evidence.quality import GAP
 from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import DataQuality, Diagnosis, Errors, FitQuality, InputFault
+from pierburg_ros.inference.data import GAP
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
@@ -20,7 +20,7 @@ def refusal(recordings: Sequence[Recording], nominal: Model, faults: Sequence[Fa
     unknown = Errors(nominal_rmse=None, recalibrated_rmse=None, final_rmse=None)
     first = recordings[0]
     document = Diagnosis(
-        schema=2,
+        schema=3,
         recordings=[recording.name for recording in recordings],
         quantity=nominal.actuator.quantity,
         unit=nominal.actuator.unit,

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import numpy as np
 
+from pierburg_ros.arrays import Signal
+from pierburg_ros.diagnosis.found import Found
 from pierburg_ros.diagnosis.result import Tried
 from pierburg_ros.diagnosis.schema import Status
-from pierburg_ros.diagnosis.search.found import Found
-from pierburg_ros.diagnosis.search.selection import alike as closest
-from pierburg_ros.diagnosis.search.selection import tied
-from pierburg_ros.diagnosis.verdict.conclusion import Conclusion
-from pierburg_ros.estimation.data import rms
-from pierburg_ros.estimation.estimator import Fit
-from pierburg_ros.estimation.likelihood import SIGNIFICANT
+from pierburg_ros.inference.choice import Score
 from pierburg_ros.inference.explanation import WHEN, quantities
+from pierburg_ros.inference.fit import Fit, adequate
 from pierburg_ros.pages.numbers import words
 
 DRAWN = 5
@@ -48,64 +45,48 @@ def shortened(fit: Fit, recalibrated: Fit) -> str:
     return "+".join([RECALIBRATED, *others])
 
 
-def distinct(found: Found, chosen: Fit) -> list[Fit]:
-    """The chosen fit, then the best fit of every other name, the best first."""
-    best = {identifier(chosen): chosen}
-    for fit in sorted(found.fits.values(), key=lambda fit: fit.chi2):
-        best.setdefault(identifier(fit), fit)
-    return list(best.values())
+def statuses(found: Found) -> dict[str, Status]:
+    """Status by name: chosen, tied (fits as well, and does not contain the chosen one) or rejected."""
+    choice = found.choice
+    own, score = set(quantities(choice.handed.explanation)), Score.of(choice.fits)
+    result: dict[str, Status] = {}
+    for fit in choice.fits:
+        alike = score.alike(fit, choice.handed) and adequate(fit) and not own < set(quantities(fit.explanation))
+        result.setdefault(identifier(fit), "tied" if alike and own else "rejected")
+    return {**result, identifier(choice.handed): "chosen"}
 
 
-def statuses(found: Found, chosen: Fit) -> dict[str, Status]:
-    """Status by name: chosen, tied (fits neither worse nor better, and does not contain the chosen one) or rejected."""
-    own = set(quantities(chosen.explanation))
-    least = 2.0 * chosen.misfit - closest(chosen)
-    equals = [fit for fit in tied(chosen, found.fits.values(), found.estimator) if fit.misfit >= least]
-    alike = {identifier(fit) for fit in equals if not own < set(quantities(fit.explanation))}
-    if not own:
-        alike = set()
-    alike.discard(identifier(chosen))
-    result: dict[str, Status] = {identifier(fit): "rejected" for fit in found.fits.values()}
-    result.update(dict.fromkeys(alike, "tied"))
-    return {**result, identifier(chosen): "chosen"}
+def rivals(found: Found) -> list[tuple[Tried, Fit]]:
+    """The model that is handed out, and all other explanations that were fitted, the best first."""
+    choice, status = found.choice, statuses(found)
+    handed, listed = found.written, {identifier(choice.handed): choice.handed}
+    for fit in sorted(choice.fits, key=lambda fit: fit.chi2):
+        listed.setdefault(identifier(fit), fit)
+    score = Score.of(choice.fits)
 
+    def row(fit: Fit, name: str, how: Status, key: str) -> Tried:
+        data, residual = found.data, found.residual(fit)
+        unseen = residual[data.test]
+        lack = score.lack(fit.chi2) - score.lack(choice.handed.chi2)
+        return Tried(name, fit.size, how, rms(residual[data.train]), rms(unseen) if unseen.size else None, lack, key)
 
-def rivals(found: Found, conclusion: Conclusion) -> list[tuple[Tried, Fit]]:
-    """The chosen explanation with its last values, what ties with it or fits better, and all others of its size.
-
-    If nothing was added to the nominal model, these others are explanations with one quantity.
-    """
-    chosen = conclusion.chosen
-    status = statuses(found, chosen)
-    size = max(chosen.explanation.size, 1)
-    clear = chosen.misfit - SIGNIFICANT * chosen.repetition
-    others = [
-        fit
-        for fit in distinct(found, chosen)[1:]
-        if status[identifier(fit)] == "tied" or fit.explanation.size == size or fit.misfit < clear
-    ]
-    others.sort(key=lambda fit: (status[identifier(fit)] != "tied", fit.chi2))
-    name = shortened(chosen, conclusion.recalibrated)
-    rows = [(_row(found, conclusion, conclusion.final, "chosen", name), conclusion.final)]
+    own = shortened(choice.handed, choice.estimated)
+    rows = [(row(choice.handed, own, "chosen", "final" if handed is choice.handed else "chosen"), choice.handed)]
+    if handed is not choice.handed:
+        name = shortened(handed, choice.estimated)
+        shaped = f"{name}+{SHAPE}" if handed.model.residual_torque is not None else name
+        rows.insert(0, (row(handed, shaped, "rejected", "final"), handed))
+    others = [fit for fit in listed.values() if fit is not choice.handed and fit is not handed]
     for place, fit in enumerate(others):
         name = identifier(fit)
-        row = _row(found, conclusion, fit, status[name], name)
-        rows.append((replace(row, key=f"rival-{place}" if place < DRAWN else ""), fit))
+        rows.append((row(fit, name, status[name], f"rival-{place}" if place < DRAWN else ""), fit))
     return rows
 
 
-def _row(found: Found, conclusion: Conclusion, fit: Fit, status: Status, name: str) -> Tried:
-    data, chosen = found.data, conclusion.chosen
-    model = conclusion.model if status == "chosen" else fit.model
-    residual = data.residual(model, fit.switch) * data.noise
-    unseen = residual[data.test]
-    lack = 0.0 if status == "chosen" else (fit.misfit - chosen.misfit) / chosen.repetition
-    return Tried(
-        name,
-        fit.explanation.size,
-        status,
-        rms(residual[data.train]),
-        rms(unseen) if unseen.size else None,
-        lack,
-        "final" if status == "chosen" else "",
-    )
+SHAPE = "map_of_the_missing_torque"
+"""Name of what is added to an explanation as a torque over angle and velocity."""
+
+
+def rms(residual: Signal) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(residual))))

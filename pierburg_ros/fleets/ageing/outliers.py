@@ -7,7 +7,7 @@ from scipy import stats
 
 from pierburg_ros.arrays import Signal
 
-FEWEST = 6
+FEWEST_UNITS = 6
 """Units from which on one can differ from the others. Chosen: of five others the middle half is three; not varied."""
 NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation. Derived: 1 over its 75 % quantile."""
@@ -21,7 +21,7 @@ def differences(levels: Signal, deviations: Signal) -> tuple[Signal, Signal]:
     freedom as a median of so many has (its efficiency, 0.64, times their number). NaN where there are too few.
     """
     nothing = np.full(levels.size, np.nan)
-    if levels.size < FEWEST:
+    if levels.size < FEWEST_UNITS:
         return nothing, nothing
     away = np.empty(levels.size)
     for number in range(levels.size):

@@ -10,7 +10,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.fleets.ageing.course import Course
 from pierburg_ros.fleets.ageing.regression import Regression, regression
 
-FEWEST = 4
+FEWEST_RECORDINGS = 4
 """Recordings from which on a trend is sought. Derived: a line has two numbers, and two more are the least that tell
 their scatter."""
 COVARIATE = 6
@@ -72,7 +72,7 @@ def warms(course: Course) -> bool:
 
 def line(course: Course, steps: tuple[float, ...] = ()) -> Line | None:
     """The line of a course with `steps` at these times [days]; None where there are too few recordings to tell."""
-    if course.size < FEWEST + len(steps) or np.ptp(course.time) == 0.0:
+    if course.size < FEWEST_RECORDINGS + len(steps) or np.ptp(course.time) == 0.0:
         return None
     made, warm = columns(course, steps)
     found = regression(made, course.value, course.deviation)

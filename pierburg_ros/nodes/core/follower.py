@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-AHEAD = 1000
+TICKS_AHEAD = 1000
 """Ticks that the source may be ahead: a tenth of what publishers and readers keep, so that nothing is pushed out,
 and at 5000 ticks a second 20 turns of the recorder's reading, so that a run is hardly slowed down."""
-PATIENCE = 15.0
+RECORDER_PATIENCE = 15.0
 """Longest wait [s] for a recorder that does not move: half as long again as the 10 s for which any process may
 be without a processor. One that was killed is told from a stopped one by nothing else."""
 
@@ -35,10 +35,10 @@ class Follower:
         """
         if self._until is None:
             return False
-        if now - self._until <= AHEAD * period:
+        if now - self._until <= TICKS_AHEAD * period:
             self.given_up = False
             self._moved = self._clock()
             return False
-        if self._clock() - self._moved > PATIENCE:
+        if self._clock() - self._moved > RECORDER_PATIENCE:
             self.given_up = True
         return not self.given_up

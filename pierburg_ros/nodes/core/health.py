@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-PERIOD = 1.0
+REPORT_PERIOD = 1.0
 """Time between two reports when nothing changes [s]."""
-SHORTEST = 0.1
+SHORTEST_REPORT = 0.1
 """Shortest time between two reports [s]: a change is told at once, a flicker ten times a second."""
 SHOWN = 10.0
 """Time for which a refusal stays in the reports [s]."""
@@ -76,7 +76,7 @@ class Health:
         if self._reported is None:
             return True
         passed = now - self._reported
-        return passed >= PERIOD - 0.5 * SHORTEST or (self._is_news and passed >= SHORTEST)
+        return passed >= REPORT_PERIOD - 0.5 * SHORTEST_REPORT or (self._is_news and passed >= SHORTEST_REPORT)
 
     def report(self, tasks: Mapping[str, str], now: float) -> list[Status]:
         """One status for each task, `tasks` giving the message of one that is well; conditions over are forgotten."""

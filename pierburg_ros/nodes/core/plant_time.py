@@ -16,7 +16,7 @@ REPEAT = 0.2
 """A sample without reply is sent again after this time [s]."""
 GIVE_UP = 5.0
 """Without any reply the run ends after this time [s]."""
-LOOK = 0.02
+PARTNER_LOOK = 0.02
 """Time [s] between two looks for the partners of a run in lockstep."""
 
 
@@ -62,7 +62,7 @@ class Lockstep:
 
     def wait_for_partners(self, present: Callable[[], bool]) -> None:
         """Return once the samples are read and duties are sent."""
-        while not present() and not self._stopping.wait(LOOK):
+        while not present() and not self._stopping.wait(PARTNER_LOOK):
             pass
 
     def exchange(self, send: Callable[[], None]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-WINDOW = 1.0
+COUNTED_TIME = 1.0
 """Time over which a rate is counted [s]."""
 
 
@@ -19,7 +19,7 @@ class Rate:
         """One happened at `now`."""
         self.count += 1
         self._times.append(now)
-        while now - self._times[0] > WINDOW:
+        while now - self._times[0] > COUNTED_TIME:
             self._times.popleft()
 
     def age(self, now: float) -> float | None:
@@ -27,8 +27,8 @@ class Rate:
         return now - self._times[-1] if self._times else None
 
     def rate(self, now: float) -> float:
-        """Events per second over the last `WINDOW`."""
-        return sum(now - time <= WINDOW for time in self._times) / WINDOW
+        """Events per second over the last `COUNTED_TIME`."""
+        return sum(now - time <= COUNTED_TIME for time in self._times) / COUNTED_TIME
 
     def values(self, now: float, name: str) -> dict[str, object]:
         """Count, rate and age as a diagnostic tells them."""

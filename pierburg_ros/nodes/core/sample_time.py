@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-KEPT = 4096
+WAITING_READINGS = 4096
 """Readings that may be waiting for their samples."""
 MISSES = 2
 """Samples in a row without a reading of their own after which the clock counts as slower than they are."""
@@ -21,7 +21,7 @@ class SampleTime:
     """
 
     def __init__(self) -> None:
-        self._waiting: deque[tuple[int, int]] = deque(maxlen=KEPT)
+        self._waiting: deque[tuple[int, int]] = deque(maxlen=WAITING_READINGS)
         self._current: tuple[int, int] | None = None
         self._is_used = False
         self._pace = 1.0

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 Item = TypeVar("Item")
-KEPT = 10_000
+KEPT_READINGS = 10_000
 """Clock readings kept for looking up times: ten seconds at 1 kHz."""
-LONGEST = 20.0
+LONGEST_HOLD = 20.0
 """Longest time [s] that anything is held back; older than that on arrival is the past of a latched topic."""
 MEMORY = 2.0
 """Time [s] for which a late arrival keeps the others waiting; one round of repair takes well below a second."""
@@ -44,7 +44,7 @@ class SourceOrder(Generic[Item]):
         """Add an item sent at `sent` and taken at `taken` [ns]."""
         self._arrivals += 1
         age = (sent if taken is None else taken) - sent
-        if self._horizon < age * MARGIN < LONGEST * 1e9:
+        if self._horizon < age * MARGIN < LONGEST_HOLD * 1e9:
             now = sent + age
             self._late = max(age, self._late if now - self._late_at < MEMORY * 1e9 else 0)
             self._late_at = now
@@ -76,8 +76,8 @@ class SimulatedTime:
         self._first = sent if self._first is None else self._first
         self._sent.append(sent)
         self._clock.append(clock)
-        if len(self._sent) > 2 * KEPT:
-            del self._sent[:KEPT], self._clock[:KEPT]
+        if len(self._sent) > 2 * KEPT_READINGS:
+            del self._sent[:KEPT_READINGS], self._clock[:KEPT_READINGS]
 
     def at(self, sent: int) -> int | None:
         """The simulated time [ns] at `sent` [ns]; None before the first reading."""

@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from pierburg_ros.nodes.core.health import SHORTEST, Condition, Health, Status
+from pierburg_ros.nodes.core.health import SHORTEST_REPORT, Condition, Health, Status
 
 OK = DiagnosticStatus.OK
 WARN = DiagnosticStatus.WARN
@@ -37,7 +37,7 @@ class Diagnostics:
         self._logged: dict[str, float] = {}
         self._tasks: dict[str, tuple[str, Values]] = {"": ("running", counters)}
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        node.create_timer(SHORTEST, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(SHORTEST_REPORT, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def task(self, name: str, well: str, values: Values) -> None:
         """Add a task with the message for when it is well and what its status counts."""

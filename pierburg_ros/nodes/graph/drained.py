@@ -9,7 +9,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-KEPT = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
+DRAINED = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """Ten seconds at 500 Hz between two looks; best effort matches every publisher."""
 
 
@@ -33,7 +33,7 @@ class Drained:
 
     def __init__(self, node: Node, kind: type, topic: str, group: Unserved) -> None:
         self._kind = kind
-        self._subscription = node.create_subscription(kind, topic, lambda _: None, KEPT, callback_group=group)
+        self._subscription = node.create_subscription(kind, topic, lambda _: None, DRAINED, callback_group=group)
 
     def taken(self) -> Iterator[tuple[Any, dict[str, int]]]:
         """Messages that have come since the last call, with what the middleware knows of them."""

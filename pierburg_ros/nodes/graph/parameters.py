@@ -24,7 +24,7 @@ from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from pierburg_ros.errors import InputError, near
-from pierburg_ros.nodes.core.depth import DEPTH, KEPT
+from pierburg_ros.nodes.core.depth import DEPTH, KEPT_MESSAGES
 from pierburg_ros.nodes.core.parameter_files import unread_files
 from pierburg_ros.nodes.graph.diagnostics import Diagnostics
 from pierburg_ros.nodes.graph.qos import COMMANDS, PUBLISHED, overridable
@@ -62,7 +62,7 @@ class LiveNode(Node):
     @property
     def kept(self) -> int:
         """Messages that publishers of signals keep."""
-        return KEPT if self.is_simulated else int(self.values.get(DEPTH.name, KEPT))
+        return KEPT_MESSAGES if self.is_simulated else int(self.values.get(DEPTH.name, KEPT_MESSAGES))
 
     def create_publisher(self, kind: type, topic: str, profile: Any, **options: Any) -> Publisher:
         """A publisher whose quality of service `qos_overrides` may change, if it is one of the project's topics."""

@@ -5,12 +5,12 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from pierburg_ros.nodes.core.depth import KEPT
+from pierburg_ros.nodes.core.depth import KEPT_MESSAGES
 
 SIGNALS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 """Reading signals at the sample rate: a late reader wants the newest ones, not the past."""
 
-PUBLISHED = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.RELIABLE)
+PUBLISHED = QoSProfile(depth=KEPT_MESSAGES, reliability=ReliabilityPolicy.RELIABLE)
 """Publishing them, in full: a node with a parameter `depth` keeps so many, see `LiveNode.kept`."""
 
 STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -19,7 +19,7 @@ STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=D
 COMMANDS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 """Setpoints and parameters sent by a person or a script."""
 
-RECORDED = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.RELIABLE)
+RECORDED = QoSProfile(depth=KEPT_MESSAGES, reliability=ReliabilityPolicy.RELIABLE)
 """The recorder's reading, which wants all of them."""
 
 PROGRESS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -12,7 +12,7 @@ from pierburg_ros.nodes.core.policy import Rights, named
 
 COMPLETE = "set_parameter"
 """Last topic that every node of this package subscribes: with it the node is whole."""
-SETTLED = 3.0
+RIGHTS_SETTLED = 3.0
 """Time for which nothing may be added before the rights count [s]: a whole controller looks at the graph for 1 s before
 it has a publisher, and on a busy machine discovery takes another second."""
 DEADLINE = 600.0
@@ -29,7 +29,7 @@ def rights_of(observers: Sequence[Node], name: str) -> list[Rights]:
         if now != seen:
             seen, since = now, time.monotonic()
         is_whole = all(f"~/{COMPLETE}" in each.subscribe for each in seen)
-        if is_whole and time.monotonic() - since > SETTLED:
+        if is_whole and time.monotonic() - since > RIGHTS_SETTLED:
             return seen
     raise TimeoutError(f"{name} was not whole on the graph within {DEADLINE:g} s: {seen}")
 

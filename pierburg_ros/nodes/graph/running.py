@@ -17,10 +17,10 @@ from rclpy.signals import SignalHandlerOptions
 from pierburg_ros.errors import InputError
 from pierburg_ros.nodes.graph.parameters import LiveNode
 
-TURN = 0.1
+SIGNAL_NOTICED = 0.1
 """Longest time [s] until a signal is noticed while nothing else happens."""
 
-AGAIN = 0.5
+SIGNAL_AGAIN = 0.5
 """Time [s] after which a signal that was not heard is raised again: well within the 5 s in which a node has to end."""
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -59,8 +59,8 @@ def join() -> None:
 def made(make: Callable[[], LiveNode]) -> LiveNode | None:
     """The node, or none where a signal came while it was made.
 
-    A signal is raised again every `AGAIN` until it is heard: the compiler's callbacks swallow what is raised within
-    them, or end in an error of their own.
+    A signal is raised again every `SIGNAL_AGAIN` until it is noticed: the compiler's callbacks swallow what is raised
+    within them, or end in an error of their own.
     """
     told = False
 
@@ -68,7 +68,7 @@ def made(make: Callable[[], LiveNode]) -> LiveNode | None:
         nonlocal told
         told = True
         sys.unraisablehook = lambda _: None  # what a callback swallows is told as a traceback otherwise
-        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        signal.setitimer(signal.ITIMER_REAL, SIGNAL_AGAIN)
         raise KeyboardInterrupt
 
     for number in (*SIGNALS, signal.SIGALRM):
@@ -110,4 +110,4 @@ def serve(node: LiveNode) -> None:
         leaving.callback(node.stopping.set)
         node.begin()
         while not node.stopping.is_set():
-            executor.spin_once(timeout_sec=TURN)
+            executor.spin_once(timeout_sec=SIGNAL_NOTICED)

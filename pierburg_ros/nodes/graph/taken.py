@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rclpy.subscription import Subscription
 
-NOTHING = 401
+NO_MESSAGE = 401
 """What `rcl` returns where no message waits (RCL_RET_SUBSCRIPTION_TAKE_FAILED)."""
 
 
@@ -71,5 +71,5 @@ class Taker:
             while not (code := self._rcl.rcl_take_serialized_message(at, ctypes.byref(data), ctypes.byref(info), None)):
                 content = ctypes.string_at(data.buffer, data.length)
                 yield Taken(content, bytes(info.publisher), info.number, info.sent, info.arrived)
-        if code != NOTHING:
+        if code != NO_MESSAGE:
             raise RuntimeError(f"{subscription.topic_name}: a message could not be taken (rcl returned {code})")

@@ -13,7 +13,7 @@ from pierburg_ros.nodes.graph.diagnostics import WARN, Diagnostics
 from pierburg_ros.nodes.graph.qos import PROGRESS
 from pierburg_ros.nodes.recording.time import RECORDED_UNTIL
 
-LOOK = 0.002
+RECORDER_LOOK = 0.002
 """Time [s] between two looks whether a recorder has moved."""
 
 
@@ -29,7 +29,7 @@ class HeldBack:
     def wait(self, now: int, period: int) -> bool:
         """Return when the tick at `now` [ns] may be followed by another one; whether that took any waiting."""
         waited = False
-        while self.must_wait(now, period) and not self._stopping.wait(LOOK):
+        while self.must_wait(now, period) and not self._stopping.wait(RECORDER_LOOK):
             waited = True
         return waited
 

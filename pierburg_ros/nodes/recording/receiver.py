@@ -8,7 +8,7 @@ from threading import Event, Lock, Thread
 
 from pierburg_ros.nodes.recording.topics import Received, RecordedTopics
 
-TURN = 0.005
+RECEIVER_LOOK = 0.005
 """Time [s] between two looks: a hundredth of a reader's capacity at 4000 messages a second."""
 
 
@@ -44,7 +44,7 @@ class Receiver:
 
     def _receive(self) -> None:
         try:
-            while not self._stopping.wait(TURN):
+            while not self._stopping.wait(RECEIVER_LOOK):
                 self.turn()
         except BaseException as error:  # handed over, so that the node ends with it instead of going deaf
             self._failure = error

@@ -18,7 +18,7 @@ from pierburg_ros.nodes.recording.topics import Received
 CLOCK = "/clock"
 RECORDED_UNTIL = "/recorded_until"
 """Topic on which a recorder in simulated time says up to when it has everything; no stamp says that it leaves."""
-APART = 1.0
+FILES_APART = 1.0
 """Least time [s] between two files that a jump back begins: two sources of /clock jump at every reading."""
 Timed = tuple[Received, int, int]
 """A message with its publish and log times [ns]."""
@@ -36,7 +36,7 @@ class RecordedTime:
         self._followed = {CLOCK, *(node.resolve_topic_name(name) for name in OF_THE_PLANT)}
         self._last: dict[str, int] = {}
         self._held: dict[str, Received] = {}
-        self._latest, self._jumped = 0, -APART
+        self._latest, self._jumped = 0, -FILES_APART
         self._publisher = node.create_publisher(Header, RECORDED_UNTIL, PROGRESS) if is_simulated else None
 
     def take(self, received: Received, sent: int) -> None:
@@ -75,7 +75,7 @@ class RecordedTime:
     def _goes_back(self, time: int) -> bool:
         back, self._latest = time < self._latest, time
         now = monotonic()
-        if not back or now - self._jumped < APART:
+        if not back or now - self._jumped < FILES_APART:
             return False
         self._jumped = now
         return True

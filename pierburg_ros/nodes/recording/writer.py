@@ -10,7 +10,7 @@ from pierburg_ros.nodes.recording.file import RecordingFile
 from pierburg_ros.nodes.recording.series import RecordingSeries
 from pierburg_ros.nodes.recording.topics import Received
 
-AGAIN = 1.0
+RETRIED = 1.0
 """Time [s] after which a new file is tried where the last one ended for want of room."""
 
 
@@ -43,7 +43,7 @@ class RecordingWriter:
 
     def is_due_again(self) -> bool:
         """Whether a file is wanted and it is time to try one."""
-        return bool(self.problem) and self.file is None and time.monotonic() - self._tried > AGAIN
+        return bool(self.problem) and self.file is None and time.monotonic() - self._tried > RETRIED
 
     def write(self, messages: Iterable[tuple[Received, int, int]], flush_interval: float) -> bool:
         """Append messages with publish and log times [ns]; False where the disk has ended the file meanwhile.

@@ -12,7 +12,7 @@ from pierburg_ros.nodes.graph.diagnostics import ERROR, OK, WARN, Diagnostics
 from pierburg_ros.nodes.reports.heat import HeatReport
 
 SENSOR = "angle sensor"
-START = 30.0
+START_GRACE = 30.0
 """Time [s] after the start up to which waiting for others is no fault; a busy machine needs that long to start them."""
 NO_CLOCK = 2.0
 """Time [s] for which Hall samples may come without a `/clock` before that is worth a warning."""
@@ -88,7 +88,7 @@ class ControllerReports:
         """Now and then: whether what is waited for is late."""
         if self.good_samples.count or not is_sending:
             return
-        level = OK if time.monotonic() - self._started < START else ERROR
+        level = OK if time.monotonic() - self._started < START_GRACE else ERROR
         self._diagnostics.begin("waiting", level, "waiting for hall_voltage", SENSOR)
 
     def _step(self) -> None:

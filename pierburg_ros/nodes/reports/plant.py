@@ -12,7 +12,7 @@ from pierburg_ros.nodes.graph.parameters import LiveNode
 from pierburg_ros.nodes.graph.publishers import listed, publishers_of
 
 TASK = "duty"
-LOOK = 0.5
+GRAPH_LOOK = 0.5
 """Time between two looks at the graph for others [s]."""
 
 
@@ -26,7 +26,7 @@ class PlantReports:
         self._refused = self._clipped = 0
         self._diagnostics.task(TASK, "obeyed", self._values)
         self._diagnostics.begin("waiting", OK, "waiting for duty", TASK)
-        node.create_timer(LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(GRAPH_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def duty(self, duty: float, is_within: bool) -> None:
         """A duty [1] was taken, clipped where it was not within its range."""

@@ -16,7 +16,7 @@ from pierburg_ros.plant.gear.teeth import felt, given_way, holding, push, shaft_
 from pierburg_ros.plant.motion.body import PARTED, UNMOVED, Line, after, balance, error, piece, share, torque_at, turn
 from pierburg_ros.plant.motion.events import (
     CORRECTED,
-    EVEN,
+    LOAD_STEP,
     SAME_MOMENT,
     beyond,
     finest,
@@ -36,7 +36,7 @@ UNTOUCHED = 1e-3
 """Share of the time in which teeth and back-EMF stop the motor within which it counts as no faster."""
 TINY = 1e-300
 """Damping [N.m.s/rad] in place of none."""
-CLOSE = 1e-6
+END_FOUND = 1e-6
 """Share of a travel within which its end is found where no straight line holds."""
 DOUBLINGS = 60
 """Steps of the search for such an end outwards."""
@@ -196,7 +196,7 @@ def _bent(p, s, grip, sides, step):
         if (step * velocity - late) * late <= 0.0:
             break
         early, late = late, 2.0 * late
-    while abs(late - early) > max(UNMOVED * p.own.angle, CLOSE * abs(late)):
+    while abs(late - early) > max(UNMOVED * p.own.angle, END_FOUND * abs(late)):
         middle = 0.5 * (early + late)
         _, velocity = _arrived(p, s, grip, sides, step, middle, start)
         if (step * velocity - middle) * late > 0.0:
@@ -256,7 +256,7 @@ def move(p, s, remaining):
     enough = _enough(p, s, grip, line)
     step = min(remaining, max(s.step, enough), turn(p, s, s.motor_velocity, line))
     if p.external_load.frequency > 0.0:
-        step = max(min(step, EVEN / p.external_load.frequency), enough)
+        step = max(min(step, LOAD_STEP / p.external_load.frequency), enough)
     while True:
         sides = _trial(p, s, grip, line, step)
         excess = max(

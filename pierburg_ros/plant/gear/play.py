@@ -27,7 +27,7 @@ from pierburg_ros.plant.motion.events import (
 from pierburg_ros.plant.motion.watch import due, put
 from pierburg_ros.plant.torques.drive import relaxed_current
 
-TURNS = 1e-4
+PLAY_TURN = 1e-4
 """Motor and shaft that both move on their own do so in turns of this share of the actuator's own time; at no-load speed
 that is a ten-thousandth of the travel a turn."""
 
@@ -122,7 +122,7 @@ def _move_parted(p, s, remaining):
     if s.motor_direction == 0.0:
         s.motor_direction = motor_onset(p, s, 0.0, s.current)
     if s.direction != 0.0:
-        return _take_turns(p, s, min(remaining, TURNS * p.own.time))
+        return _take_turns(p, s, min(remaining, PLAY_TURN * p.own.time))
     if loaded(p):
         remaining = _standing_shaft(p, s, remaining)
     if s.motor_direction == 0.0:

@@ -11,7 +11,7 @@ from pierburg_ros.effects import presliding
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.motion.body import PARTED, share, torque_at
 from pierburg_ros.plant.motion.events import lower, off_stops, upper
-from pierburg_ros.plant.torques.friction import NOTHING, breakaway, damping, leans, level
+from pierburg_ros.plant.torques.friction import NO_PUSH, breakaway, damping, leans, level
 from pierburg_ros.plant.torques.load import load, outside
 
 LEAST_DAMPING = 6e-5
@@ -24,9 +24,9 @@ NEWTON = 6
 """Tangents tried for a velocity; each doubles the digits of one that is near."""
 STRIDE = 0.25
 """Share of the Stribeck velocity in which the friction's fall turns once at most."""
-FADED = 3.0
+STRIBECK_FADED = 3.0
 """Multiple of the Stribeck velocity at which the friction above the sliding one has faded to 1e-4 of it."""
-DOUBLINGS, HALVINGS = 50, 60
+STRIDES, SECANTS = 50, 60
 """Most steps of a search, first outwards, then between two velocities by secants, whose far end loses half its say.
 Work: fifty doublings go 1e15 strides out, beyond which rounding hides a stride; with 200 a set took over 100 s."""
 
@@ -110,12 +110,12 @@ def _bends(p, angle):
 @kernel
 def _balanced(p, s, push, slack, angle, velocity, bristle, time, motor):
     """The velocity [rad/s] at which the torques balance: by tangents where it is near, else by a search."""
-    stride, faded = STRIDE * p.static_friction.stribeck_velocity, FADED * p.static_friction.stribeck_velocity
+    stride, faded = STRIDE * p.static_friction.stribeck_velocity, STRIBECK_FADED * p.static_friction.stribeck_velocity
     now = velocity
     for _ in range(NEWTON):
         torque, _, viscous, _ = resistance(p, s, angle, now, bristle, time, motor)
         left = push - torque - (slack + viscous) * now
-        if abs(left) <= NOTHING * p.own.torque:
+        if abs(left) <= NO_PUSH * p.own.torque:
             return now
         if not slack + viscous > 0.0:
             break
@@ -138,10 +138,10 @@ def _next_balance(p, s, push, slack, angle, velocity, bristle, time, motor):
     """The velocity [rad/s] next to `velocity`, on the way it is driven, at which nothing is left over."""
     left = _left_over(p, s, push, slack, angle, velocity, bristle, time, motor)
     way, stride = math.copysign(1.0, left), abs(left) / slack
-    faded = FADED * p.static_friction.stribeck_velocity
+    faded = STRIBECK_FADED * p.static_friction.stribeck_velocity
     early = late = velocity
     at_early = at_late = left
-    for _ in range(DOUBLINGS):
+    for _ in range(STRIDES):
         early, at_early = late, at_late
         if late * way < -faded:
             late = -way * faded
@@ -153,12 +153,12 @@ def _next_balance(p, s, push, slack, angle, velocity, bristle, time, motor):
         at_late = _left_over(p, s, push, slack, angle, late, bristle, time, motor)
         if at_late * way <= 0.0:
             break
-    for _ in range(HALVINGS):
+    for _ in range(SECANTS):
         middle = late - at_late * (late - early) / (at_late - at_early)
         if not min(early, late) < middle < max(early, late):
             middle = 0.5 * (early + late)
         left = _left_over(p, s, push, slack, angle, middle, bristle, time, motor)
-        if abs(left) <= NOTHING * p.own.torque:
+        if abs(left) <= NO_PUSH * p.own.torque:
             return middle
         if left * way > 0.0:
             early, at_early, at_late = middle, left, 0.5 * at_late

@@ -20,7 +20,7 @@ PARTED = 1
 """The motor alone, its teeth between the flanks or elastic."""
 
 
-STILL = 6e-11
+STILL_VELOCITY = 6e-11
 """Swings of the velocity smaller than this share of the no-load speed are none."""
 UNMOVED = 1e-11
 """Swings of the angle smaller than this share of the travel are none: the rounding of an angle is only a thousand times
@@ -186,7 +186,7 @@ def turn(p, s, velocity, line):
 def _turn(p, damping, stiffness, acceleration, jerk):
     """Time [s] to the next turn of a velocity that swings; infinite where it hardly does."""
     square = stiffness - 0.25 * damping * damping
-    least = max(STILL / p.own.time, UNMOVED * math.sqrt(square)) * p.own.angle * square
+    least = max(STILL_VELOCITY / p.own.time, UNMOVED * math.sqrt(square)) * p.own.angle * square
     if abs(acceleration) * math.sqrt(square) + abs(jerk) < least:
         return math.inf
     return turning_time(damping, stiffness, acceleration, jerk)

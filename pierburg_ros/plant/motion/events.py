@@ -2,7 +2,7 @@
 
 A sliding step is an exponential Rosenbrock step (Hochbruck, Ostermann, Acta Numerica 19 (2010) 209-286): exact
 where the balance is linear, and shortened until what the linear form leaves out moves the body by less than
-`TOLERANCE` where it is not, which also finds kinks and jumps.
+`STEP_TOLERANCE` where it is not, which also finds kinks and jumps.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from pierburg_ros.plant.torques import friction
 from pierburg_ros.plant.torques.drive import relaxed_current
 from pierburg_ros.plant.torques.load import blurred, load, outside, ripple
 
-TOLERANCE = 2e-7
+STEP_TOLERANCE = 2e-7
 """Error that an internal step may make, as a share of the actuator's travel, plus `SHARE` of its own; of the valve's
 Hall voltage it is 0.8 microvolt."""
 SHARE = 1e-4
-"""See `TOLERANCE`."""
+"""See `STEP_TOLERANCE`."""
 FURTHEST = 0.01
 """Share of the actuator's travel above which a step may not be wrong by more."""
 CORRECTED = 10.0
-"""Error that a step may show before what its line missed is put right, as a multiple of `TOLERANCE` and `SHARE`.
+"""Error that a step may show before what its line missed is put right, as a multiple of `STEP_TOLERANCE` and `SHARE`.
 Measured: with it 18 models of the valve, 60 s at 500 Hz each, are off by 0.2 mV at most from runs with a ten-thousandth
 of the tolerance, as they were without putting right."""
 FASTER = 3.0
@@ -45,11 +45,11 @@ FASTER = 3.0
 EASY = (0.8 / FASTER) ** 3
 """Error over the allowed one up to which the next step is `FASTER` times as long. Derived: errors go with the cube of a
 step, and 0.8 of the longest one that would do is taken."""
-SHORTEST = 1e-7
+SHORTEST_STEP = 1e-7
 """Internal steps are not shortened below this share of the actuator's own time; 10 ns for the valve."""
 SAME_MOMENT = 1e-11
 """Share of the actuator's own time within which a moment is found."""
-EVEN = 0.02
+LOAD_STEP = 0.02
 """Longest step of a shaft that stands, as a share of the period of a pulsating load."""
 GROWTH = 30.0
 """Largest exponent a step may grow by where friction falls with velocity."""
@@ -58,7 +58,7 @@ GROWTH = 30.0
 @kernel
 def shortest(p):
     """Length [s] below which internal steps are not shortened."""
-    return SHORTEST * p.own.time
+    return SHORTEST_STEP * p.own.time
 
 
 @kernel
@@ -162,7 +162,7 @@ def even(p, s, remaining):
     """How much of `remaining` [s] a load from outside is looked at in one go while the shaft stands."""
     step = min(remaining, external_load.next_switch(p.external_load, s.time) - s.time)
     if p.external_load.frequency > 0.0:
-        step = min(step, EVEN / p.external_load.frequency)
+        step = min(step, LOAD_STEP / p.external_load.frequency)
     return min(max(step, shortest(p)), remaining)
 
 
@@ -295,7 +295,7 @@ def finest(p, angle, velocity):
 @kernel
 def allowed(p, travel):
     """Error [rad] that a step of this `travel` [rad] may make, so that samples within it are as good as at its end."""
-    return TOLERANCE * p.own.angle + SHARE * min(abs(travel), FURTHEST * p.own.angle)
+    return STEP_TOLERANCE * p.own.angle + SHARE * min(abs(travel), FURTHEST * p.own.angle)
 
 
 @kernel

@@ -11,7 +11,7 @@ import math
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.motion.linear_piece import responses
 
-SLOW = 1e-5
+SLOW_SERIES = 1e-5
 """Below this product of rates and step the power series is the more accurate form."""
 
 
@@ -53,7 +53,7 @@ def third_responses(a, b, c, step):
 
     S solves S''' + a S'' + b S' + c S = 0 with S(0) = S'(0) = 0, S''(0) = 1.
     """
-    if max(abs(a) * step, abs(b) * step * step, abs(c) * step**3) < SLOW:
+    if max(abs(a) * step, abs(b) * step * step, abs(c) * step**3) < SLOW_SERIES:
         half = 0.5 * step * step
         third = half * step / 3.0
         return 1.0 - a * step + (a * a - b) * half, step - a * half, half - a * third, third, 0.25 * third * step

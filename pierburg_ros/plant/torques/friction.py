@@ -15,7 +15,7 @@ from pierburg_ros.effects import (
 )
 from pierburg_ros.kernel import kernel
 
-NOTHING = 4e-10
+NO_PUSH = 4e-10
 """Share of the stall torque that is no push: bristles have come to rest when nothing more than this drives them."""
 LEAST_LEAN = 1e-8
 """Share of the travel below which a sliding bristle has no lean of its own: a twentieth of the error that a step may
@@ -69,7 +69,7 @@ def standing(p, share, net, angle, motor_torque, bristle):
     """
     held = level(p, 1.0 if net > 0.0 else -1.0, 0.0, angle, motor_torque)[0]
     if leans(p, held):
-        return net - share * p.presliding.stiffness * bristle, NOTHING * p.own.torque
+        return net - share * p.presliding.stiffness * bristle, NO_PUSH * p.own.torque
     return net, share * held
 
 

@@ -13,7 +13,7 @@ from pierburg_ros.proof.dirt.wander import wander
 HUM = 0.010  # V, amplitude
 LONGEST_SPIKE = 2.0  # V
 SHORTEST_SPIKE = 0.05  # V
-DRIFT = 0.05  # V, from end to end
+SENSOR_DRIFT = 0.05  # V, from end to end
 CONVERTER = 5.0  # V, its range
 
 
@@ -33,7 +33,7 @@ def hum(log: Log, random: Random) -> Log:
 
 def drifting(log: Log, random: Random) -> Log:
     """The zero of the sensor wanders by some 50 mV."""
-    return _measured(log, log.hall.values + DRIFT * wander(log.hall.time, random))
+    return _measured(log, log.hall.values + SENSOR_DRIFT * wander(log.hall.time, random))
 
 
 def clipping(log: Log, random: Random) -> Log:

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pierburg_ros.deadline import SLOWEST
 from pierburg_ros.effects.put_in import CannotPutIn
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Model, read_model
@@ -26,7 +25,7 @@ from pierburg_ros.proof.real.strengths import WRONG, strength, values_at
 from pierburg_ros.proof.real.trial import UNTOUCHED, WITHHELD, Trial, Truth, added
 from pierburg_ros.proof.real.visibility import visibility
 from pierburg_ros.proof.seal import opened, seal
-from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST, RESULT, diagnose, finite, result
+from pierburg_ros.proof.trial_run import DIAGNOSE, LONGEST_DIAGNOSIS, RESULT, diagnose, finite, result
 from pierburg_ros.recording import Recording, read_recording
 
 RECORDING, MODEL, ANSWER = "recording.mcap", "model.yaml", "diagnosis/diagnosis.json"
@@ -35,7 +34,7 @@ NOTHING: dict[str, Any] = {"verdict": "none", "effects": []}
 
 @dataclass(frozen=True)
 class Bench:
-    """Where the files of a run lie, and how it diagnoses: the `command`, with so many seconds of an idle machine."""
+    """Where the files of a run lie, and how it diagnoses: the `command`, with so many usual efforts."""
 
     output: Path
     version: str
@@ -44,9 +43,8 @@ class Bench:
 
     def diagnose(self, folder: Path, recordings: Mapping[str, str]) -> float:
         """Diagnose `recordings`, the file in `folder` of each, against the model there; gives the time it took [s]."""
-        budget = self.budget * len(recordings)
-        command = (*self.command, "--model", MODEL, "--budget", f"{budget:g}")
-        return diagnose(folder, command, {**recordings, MODEL: MODEL}, SLOWEST * budget + LONGEST)
+        command = (*self.command, "--model", MODEL, "--budget", f"{self.budget:g}")
+        return diagnose(folder, command, {**recordings, MODEL: MODEL}, LONGEST_DIAGNOSIS)
 
     def source(self, name: str) -> Path:
         """The recording called `name`, as it was taken up."""

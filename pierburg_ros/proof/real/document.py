@@ -1,4 +1,4 @@
-"""Writes what the trials on real recordings came to, as the part of a machine in `docs/proof-real.md`."""
+"""Writes what the trials on real recordings came to, as the part of a machine in `proof-real.md`."""
 
 from __future__ import annotations
 

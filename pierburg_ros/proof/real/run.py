@@ -70,7 +70,7 @@ def planned(machine: Machine, only: Sequence[str] = (), levels: Sequence[str] = 
 
 
 def begin(output: Path, plan: Plan, budget: float) -> None:
-    """Make the run's folder, or find it again; one of other recordings, another model or budget [s] is refused."""
+    """Make the run's folder, or find it again; one of other recordings, another model or budget is refused."""
     if output.exists() and not output.is_dir():
         raise InputError(f"{output} is a file, expected a folder for the run. Choose another --output.")
     output.mkdir(parents=True, exist_ok=True)

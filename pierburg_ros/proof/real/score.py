@@ -9,7 +9,7 @@ from typing import Any
 from pierburg_ros.proof.real.trial import UNTOUCHED
 from pierburg_ros.proof.score import alternatives
 
-VALUE_TOLERANCE = 0.25
+REAL_VALUE_TOLERANCE = 0.25
 """Share of the true value by which a value may be off. Given: 25 % beside all that is really in a recording."""
 
 
@@ -81,7 +81,9 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
 
     name, expected = next(iter(true.items())) if true else ("", None)
     found = value_of(name, diagnosis) if true and is_named(effects, drifted) else None
-    within = None if found is None or expected is None else abs(found - expected) <= VALUE_TOLERANCE * abs(expected)
+    within = (
+        None if found is None or expected is None else abs(found - expected) <= REAL_VALUE_TOLERANCE * abs(expected)
+    )
     return Score(
         name=truth["id"],
         recording=truth["recording"],
@@ -102,5 +104,5 @@ def score(truth: Mapping[str, Any], diagnosis: Mapping[str, Any], untouched: Map
         within=within,
         beside=tuple(sorted(effects - {kind} - (set() if kind == UNTOUCHED else before))),
         refused=tuple(f"{fault['signal']}: {fault['what']}" for fault in diagnosis.get("input_faults", [])),
-        stopped=bool(diagnosis.get("stopped", False)),
+        stopped=diagnosis.get("effort", {}).get("stopped_by") is not None,
     )

@@ -14,9 +14,9 @@ MOST_UNPACKED = 256 << 20
 RATIO = 1000
 """Bytes unpacked per byte of file at most. Messages differ in time and sequence and shrink to a thirtieth; only large
 constant ones, as black pictures, shrink further."""
-WINDOW = 128 << 20
+ZSTD_WINDOW = 128 << 20
 """Bytes of history that zstd may ask for; its own tools refuse more unless told otherwise."""
-BLOCK = 1 << 20
+READ_BLOCK = 1 << 20
 
 
 class Damaged(ValueError):
@@ -39,7 +39,7 @@ def read_up_to(kind: str, data: bytes, most: int) -> bytes:
     if kind == "":
         return data
     if kind == "zstd":
-        return bytes(zstandard.ZstdDecompressor(max_window_size=WINDOW).stream_reader(data).read(most + 1))
+        return bytes(zstandard.ZstdDecompressor(max_window_size=ZSTD_WINDOW).stream_reader(data).read(most + 1))
     if kind == "lz4":
         return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most + 1))
     raise Damaged(f"the compression {kind!r} is unknown")
@@ -52,9 +52,9 @@ def most_unpacked(size: int) -> int:
 
 def unpack_file(source: BinaryIO, target: BinaryIO, most: int, name: str) -> None:
     """Unpack the zstd file `source` into `target`, `most` bytes at most."""
-    reader = zstandard.ZstdDecompressor(max_window_size=WINDOW).stream_reader(source, read_across_frames=True)
+    reader = zstandard.ZstdDecompressor(max_window_size=ZSTD_WINDOW).stream_reader(source, read_across_frames=True)
     try:
-        while block := reader.read(BLOCK):
+        while block := reader.read(READ_BLOCK):
             target.write(block)
             if target.tell() > most:
                 raise InputError(

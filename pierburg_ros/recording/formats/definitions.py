@@ -21,7 +21,7 @@ SEPARATOR = re.compile(r"^={80}\nIDL: .*\n", flags=re.MULTILINE)
 INCLUDE = re.compile(r"^#include .*$", flags=re.MULTILINE)
 """A line of IDL that names another file; all that it names stands in the definition."""
 HEADER = "std_msgs/msg/Header"
-LONGEST = 1 << 18
+LONGEST_DEFINITION = 1 << 18
 """Characters of a definition at most; those of the largest types of ROS, with all that they hold, have 20,000."""
 MOST_ELEMENTS = 1 << 20
 """Elements of an array at most."""
@@ -56,7 +56,7 @@ def types_of(name: str, definition: Definition) -> Typestore:
     standard = get_typestore(Stores.ROS2_JAZZY)
     if not definition.text and name in standard.fielddefs:
         return standard
-    if not definition.text or definition.language not in PARSERS or len(definition.text) > LONGEST:
+    if not definition.text or definition.language not in PARSERS or len(definition.text) > LONGEST_DEFINITION:
         raise InputError(
             f"{name} has no definition in the file that is read here ({definition.language or 'none'}), expected one"
             " in ros2msg or ros2idl. Record to MCAP, or with ROS 2 Iron or later."

@@ -22,7 +22,7 @@ OVERHEAD = 80
 MOST_KEPT = 1 << 30
 """Bytes of messages kept at most, half of the 2 GiB that a command may take; the arrays made of them have the rest.
 It is 3 h at 1 kHz of all the topics that are read."""
-LONGEST = 1 << 14
+LONGEST_MESSAGE = 1 << 14
 """Bytes of a message that is kept: 2,000 numbers. Of larger ones, as pictures and clouds of points, the times are kept,
 so that a camera beside an actuator does not take the memory."""
 
@@ -99,7 +99,7 @@ class Bag:
                 " a negative one, expected a time before the year 2262. Cut or repair the recording there."
             )
         data = self.unpack(data)
-        data = data if len(data) <= LONGEST else b""
+        data = data if len(data) <= LONGEST_MESSAGE else b""
         self.weight += len(data) + OVERHEAD
         if self.weight > MOST_KEPT:
             raise InputError(

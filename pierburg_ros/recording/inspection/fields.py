@@ -18,14 +18,14 @@ from pierburg_ros.recording.decoding import DECODERS, decoded
 from pierburg_ros.recording.formats.cdr import JOINT_STATE
 from pierburg_ros.recording.formats.definitions import types_of
 from pierburg_ros.recording.formats.messages import Messages
-from pierburg_ros.recording.message_types import DEEPEST
+from pierburg_ros.recording.message_types import DEEPEST_MESSAGES
 from pierburg_ros.recording.signal_map.field_path import names_beside
 
 MOST_LOOKED_AT = 1000
 """Messages of a topic that are decoded, evenly over the recording: some 50 ms for a type of twenty numbers."""
-MOST_ELEMENTS = 16
+LISTED_ELEMENTS = 16
 """Elements of an array that are listed."""
-MOST_FIELDS = 100
+LISTED_FIELDS = 100
 """Numbers of a message that are listed."""
 STAMP = {"sec", "nanosec"}
 ELEMENT = re.compile(r"\[([^\[\]]+)\]")
@@ -83,8 +83,8 @@ def fields_of(messages: Messages) -> tuple[Field, ...]:
         found: dict[str, list[tuple[int, float]]] = defaultdict(list)
         for place in np.unique(np.linspace(0, len(messages) - 1, MOST_LOOKED_AT).astype(int)):
             message = decoded(store, messages, int(place), messages.data[place])
-            for count, (path, value) in enumerate(leaves(message, "", [message], DEEPEST)):
-                if count >= MOST_FIELDS:
+            for count, (path, value) in enumerate(leaves(message, "", [message], DEEPEST_MESSAGES)):
+                if count >= LISTED_FIELDS:
                     break
                 found[path].append((int(place), float(value)))
     except InputError:
@@ -108,7 +108,7 @@ def leaves(node: Any, path: str, around: list[Any], depth: int) -> Iterator[tupl
         yield path, float(node)
     elif isinstance(node, (list, np.ndarray)):
         names = names_of(node, around)
-        for place, each in enumerate(node[:MOST_ELEMENTS]):
+        for place, each in enumerate(node[:LISTED_ELEMENTS]):
             yield from leaves(each, f"{path}[{names[place] if names else place}]", [*around, each], depth)
     elif is_dataclass(node) and depth:
         below = [each.name for each in fields(node)]

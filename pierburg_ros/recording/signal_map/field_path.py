@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 PATH = re.compile(r"[A-Za-z]\w*(\[[^\[\]]+\])*(\.[A-Za-z]\w*(\[[^\[\]]+\])*)*")
 STEP = re.compile(r"(?P<field>\w+)|\[(?P<element>[^\[\]]+)\]")
 QUOTES = "'\""
-LONGEST = 300
+LONGEST_PATH = 300
 """Characters of a path at most."""
 
 
@@ -39,7 +39,7 @@ class Absent(Exception):
 
 def field_path(written: str) -> FieldPath:
     """The path that is `written`; ValueError where it is none."""
-    if len(written) > LONGEST or not PATH.fullmatch(written):
+    if len(written) > LONGEST_PATH or not PATH.fullmatch(written):
         raise ValueError(f"{written[:60]!r} is no field path")
     return FieldPath(written, tuple(step_of(part) for part in STEP.finditer(written)))
 

@@ -16,13 +16,13 @@ from pierburg_ros.recording.signal_map.source import SignalMap, Source, TimeSour
 from pierburg_ros.recording.signals import SIGNALS, TIME, signal_of
 from pierburg_ros.recording.units import COUNTS, USUAL, Unit, unit_of
 
-KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign")
+KEYS = ("topic", "field", "column", "file", "unit", "scale", "offset", "sign", "exact")
 TIME_KEYS = ("topic", "field", "column", "unit")
 TIME_UNITS = ("s", "ms", "us", "ns")
 FORM = "expected {topic: /name, field: path} or {column: name}, with unit, scale, offset and sign where needed"
 BARE = re.compile(r"(?P<key>\b(?:field|column|topic):[ \t]+)(?P<name>[^\s'\"\[{,}][^'\"{},\n]{0,300})(?=[,}])")
 """A name or a path between braces and without quotes."""
-LARGEST = 1e12
+LARGEST_SCALE = 1e12
 """Largest magnitude of a scale, and with 1 over it the smallest: from pico to tera."""
 MOST_FILES = 1000
 """Parts of a table at most."""
@@ -96,11 +96,11 @@ class Entry:
         self.check_keys(KEYS)
         kind = self.kind()
         wanted = SIGNALS[self.signal].units
-        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST)
+        unit, scale = self.unit(wanted), self.number("scale", 1.0, LARGEST_SCALE)
         if unit.written == COUNTS and "scale" not in self.given:
             raise self.wrong("unit", COUNTS, f"a scale too, in {wanted[0]} per count")
-        if scale == 0.0 or abs(scale) < 1.0 / LARGEST:
-            raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST:g}")
+        if scale == 0.0 or abs(scale) < 1.0 / LARGEST_SCALE:
+            raise self.wrong("scale", f"{scale:g}", f"another number than 0, up to {LARGEST_SCALE:g}")
         return Source(
             kind,
             self.text(kind),
@@ -113,6 +113,8 @@ class Entry:
             self.origin,
             "" if unit.written in (COUNTS, "1") else next(each for each in wanted if unit.measures(each)),
             "unit" in self.given or "scale" in self.given,
+            unit.written if "unit" in self.given else "",
+            self.exact(),
         )
 
     def time(self) -> TimeSource:
@@ -211,6 +213,13 @@ class Entry:
         if isinstance(value, bool) or value not in (1, -1):
             raise self.wrong("sign", shown(value), "1 or -1")
         return int(value)
+
+    def exact(self) -> bool:
+        """Whether the signal is what it is read as, by the word of a person."""
+        value = self.given.get("exact", False)
+        if not isinstance(value, bool):
+            raise self.wrong("exact", shown(value), "true or false")
+        return value
 
     def files(self) -> tuple[str, ...]:
         """Names of files in the folder of the recording."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pierburg_ros.recording.signal_map.field_path import FieldPath
 from pierburg_ros.recording.signals import SIGNALS
+
+PLAIN = re.compile(r"[\w/.-]+")
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,8 @@ class Source:
     `kind` is topic, column, or either where only a name was given. `measures` is the unit of SI of what the written
     unit measures, rad or m; empty for counts and where none is written. `files` are the parts of a table, in order, in
     which the column stands; none for the recording itself. `origin` says where all of it was written. Where it is not
-    `scaled`, neither unit nor scale is written, and the unit that a table states counts.
+    `scaled`, neither unit nor scale is written, and the unit that a table states counts; `written` is either unit.
+    What is `exact` is what it is read as: nobody looks for a fault of it.
     """
 
     kind: str
@@ -33,11 +37,45 @@ class Source:
     origin: str = "--topic"
     measures: str = ""
     scaled: bool = False
+    written: str = ""
+    exact: bool = False
 
     def values(self, raw: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values [SI] of `raw` numbers."""
         gain = self.sign * self.unit * self.scale
         return raw if gain == 1.0 and self.offset == 0.0 else gain * raw + self.offset
+
+    def mended(self, scale: float, offset: float, unit: str = "") -> Source:
+        """The source of scale * value + offset; where nothing else is written, `unit` says that scale."""
+        named, size = bool(unit) and self.unit * self.scale == 1.0, abs(scale)
+        return replace(
+            self,
+            unit=size if named else self.unit,
+            scale=self.scale if named else self.scale * size,
+            offset=scale * self.offset + offset,
+            sign=self.sign if scale > 0.0 else -self.sign,
+            scaled=self.scaled or size != 1.0,
+            written=unit if named else self.written,
+        )
+
+    def line(self, signal: str) -> str:
+        """The line of a signal map that says all of this."""
+        return f"{signal}: {{{', '.join(self._entries())}}}"
+
+    def _entries(self) -> Iterator[str]:
+        if self.name:
+            yield f"{self.kind}: {quoted(self.name)}"
+        if self.path is not None:
+            yield f"field: {quoted(self.path.written)}"
+        if self.files:
+            yield f"file: [{', '.join(map(quoted, self.files))}]"
+        if self.scaled and self.written:
+            yield f"unit: {self.written}"
+        for key, value, usual in (("scale", self.scale, 1.0), ("sign", self.sign, 1), ("offset", self.offset, 0.0)):
+            if value != usual:
+                yield f"{key}: {value:.6g}"
+        if self.exact:
+            yield "exact: true"
 
 
 @dataclass(frozen=True)
@@ -53,6 +91,18 @@ class TimeSource:
     unit: float = 1.0
     origin: str = "--topic"
     scaled: bool = False
+
+    def line(self, unit: str) -> str:
+        """The line of a signal map that says this, in another `unit`."""
+        place = [f"topic: {quoted(self.topic)}"] if self.topic else []
+        place += [f"field: {quoted(self.path.written)}"] if self.path else []
+        place += [f"column: {quoted(each)}" for each in self.columns[:1]]
+        return f"time: {{{', '.join([*place, f'unit: {unit}'])}}}"
+
+
+def quoted(name: str) -> str:
+    """A name as YAML takes it between braces."""
+    return name if PLAIN.fullmatch(name) else f'"{name}"'
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """What is reported, when, and with which text."""
 
-from pierburg_ros.nodes.core.health import ERROR, OK, PERIOD, SHORTEST, WARN, Condition, Health
+from pierburg_ros.nodes.core.health import ERROR, OK, REPORT_PERIOD, SHORTEST_REPORT, WARN, Condition, Health
 
 TASKS = {"": "running", "sensor": "well"}
 
@@ -29,7 +29,7 @@ def test_a_condition_that_flickers_is_told_ten_times_a_second_at_most():
         else:
             health.end("spike")
 
-    assert reports(health, 5.0, flicker) <= 5.0 / SHORTEST + 1
+    assert reports(health, 5.0, flicker) <= 5.0 / SHORTEST_REPORT + 1
 
 
 def test_a_condition_over_before_the_report_is_still_told_once():
@@ -37,7 +37,7 @@ def test_a_condition_over_before_the_report_is_still_told_once():
     health.begin("spike", Condition("sensor", WARN, "a spike"))
     health.end("spike")
     assert [(each.level, each.message) for each in health.report(TASKS, 0.0)][1] == (WARN, "a spike (over)")
-    assert [(each.level, each.message) for each in health.report(TASKS, PERIOD)][1] == (OK, "well")
+    assert [(each.level, each.message) for each in health.report(TASKS, REPORT_PERIOD)][1] == (OK, "well")
 
 
 def test_the_newest_text_is_told_and_the_worst_level_counts():

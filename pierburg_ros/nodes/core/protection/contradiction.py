@@ -1,7 +1,7 @@
 """Finds an angle that does not go where the duty drives it: against it, or at rest where no stop is.
 
 A duty beyond what holds the shaft anywhere in its travel (`Limits.opens_above`, `closes_below`) turns it at 2.5 rad/s
-or more with Table I. So within `WINDOW` it is at the stop that the duty drives against, or well on its way there.
+or more with Table I. So within `JUDGED_TIME` it is at the stop that the duty drives against, or well on its way there.
 Noise does not hide this, as it hides a frozen sensor: the ends of a window are means over a quarter of it. What is
 found is said; nothing is done about it, for the angle may be right and the shaft blocked.
 """
@@ -12,10 +12,10 @@ from pierburg_ros.nodes.core.protection.frozen import Ends
 from pierburg_ros.nodes.core.protection.limits import Limits
 from pierburg_ros.nodes.core.protection.plausibility import Objection
 
-WINDOW = 200_000_000
+JUDGED_TIME = 200_000_000
 """Time [ns] of one judgement: 0.5 rad at the least speed, a third of the travel."""
 REVERSED = "polarity of motor or sensor reversed"
-LONGEST = 50_000_000
+LONGEST_GAP = 50_000_000
 """Time [ns] between two samples from which on it is not known what acted meanwhile."""
 
 
@@ -36,13 +36,13 @@ class Contradiction:
     def take(self, voltage: float, duty: float, time: int) -> None:
         """Take a good sample [V] at `time` [ns] and the duty [1] since the one before."""
         sure = duty > self.limits.opens_above or duty < self.limits.closes_below
-        late = bool(self._samples) and time - self._samples[-1][0] > LONGEST
+        late = bool(self._samples) and time - self._samples[-1][0] > LONGEST_GAP
         if not sure or late or duty * self._duty < 0.0:
             self.forget()
         if sure:
             self._duty = duty
             self._samples.append((time, voltage))
-        if self._samples and time - self._samples[0][0] >= WINDOW:
+        if self._samples and time - self._samples[0][0] >= JUDGED_TIME:
             self.found = self._judged([each for _, each in self._samples])
             self.forget()
 

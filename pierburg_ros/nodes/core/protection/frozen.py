@@ -2,10 +2,10 @@
 
 Evidence: the duty lies beyond what holds the shaft anywhere in its travel (`Limits.opens_above`, `closes_below`: the
 strongest spring torque and three times the nominal friction), the sample is not at the stop that the duty drives
-against, and the voltage stays within `STILL` of one value. Then, with Table I, the shaft would turn at 2.5 rad/s
+against, and the voltage stays within `FROZEN_SHARE` of one value. Then, with Table I, the shaft would turn at 2.5 rad/s
 or more, from the first millisecond (its mechanical time constant is below 0.1 ms), and pass 0.07 rad or 5 % of the
-span in `PATIENCE`; a sensor that lives shows that 90 times over, and its noise (3 mV and more at this converter) alone
-leaves the band within a few samples. A frozen value therefore is a broken sensor, a shaft blocked under a sensor
+span in `FROZEN_AFTER`; a sensor that lives shows that 90 times over, and its noise (3 mV and more at this converter)
+alone leaves the band within a few samples. A frozen value therefore is a broken sensor, a shaft blocked under a sensor
 without noise, or a drive that is dead: none of them is controlled by more duty.
 """
 
@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 from pierburg_ros.nodes.core.protection.limits import Limits
 
-STILL = 0.0005
+FROZEN_SHARE = 0.0005
 """Share of the span within which a value counts as unchanged: 2 mV, below two steps of a 12-bit converter over 5 V."""
-PATIENCE = 0.03
+FROZEN_AFTER = 0.03
 """Time [s] without change after which the sensor is called frozen: duty 0 is then out within 50 ms."""
-SAMPLES = 5
-"""Unchanged samples there must be at least, at rates so low that `PATIENCE` holds fewer."""
+FROZEN_SAMPLES = 5
+"""Unchanged samples there must be at least, at rates so low that `FROZEN_AFTER` holds fewer."""
 LONGEST_PAUSE = 64.0
 """Longest time between two tries [s]."""
 
@@ -60,7 +60,7 @@ class Frozen:
             self._value, self._since, self._unchanged = voltage, time, 0
             return False
         self._unchanged += 1
-        found = self._unchanged >= SAMPLES and time - self._since >= PATIENCE * 1e9
+        found = self._unchanged >= FROZEN_SAMPLES and time - self._since >= FROZEN_AFTER * 1e9
         self._failures += found
         return found
 
@@ -74,7 +74,7 @@ class Frozen:
 
     @property
     def _still(self) -> float:
-        return STILL * (self.ends.opened - self.ends.closed)
+        return FROZEN_SHARE * (self.ends.opened - self.ends.closed)
 
     def _says_move(self, voltage: float, duty: float) -> bool:
         opens = duty > self.limits.opens_above and voltage < self.ends.opened - self.ends.margin

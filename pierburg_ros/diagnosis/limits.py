@@ -1,0 +1,196 @@
+"""How strong an effect that is not named may be, and whether the recordings could show it at all.
+
+The strength is raised until the likelihood has fallen by what 95 % allows (profile likelihood), while the parameters
+follow: by a linear step, and by a short fit where that is possible. A residual that is larger than the noise, or
+correlated in time, counts as much less as it says.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects.effect import Start
+from pierburg_ros.errors import InputError
+from pierburg_ros.inference.coordinates import Coordinates, in_order
+from pierburg_ros.inference.explanation import Variant
+from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.shortlist import added
+
+ONE_SIDED = 2.71
+"""Fall of -2 log likelihood at a strength that is excluded at 95 %, one-sided. Derived: the square of 1.645, the 95 %
+quantile of the normal distribution."""
+STARTS = 3
+"""Starts of one way to act that are examined: places, frequencies, phases. Work: each costs up to `STEPS` simulations;
+the weakest of their limits counts."""
+STEPS = 4
+"""Strengths that are simulated for one start. Derived: the cost rises about with the square of the strength, so each
+simulation gives the next one."""
+CLOSE = 0.1
+"""Relative change of a strength below which it is found. Chosen: a limit is told with two digits."""
+WIDENED = 1.5
+"""Factor by which a strength is raised while a fit of the parameters makes it possible. Chosen: a limit is then too
+cautious by this factor at most."""
+RAISED = 4
+"""Times that a strength is raised before the effect counts as not excluded. Work: each costs a short fit."""
+FOLLOWING = 3
+"""Iterations of such a fit. Work: it starts from the linear step."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The strength [unit of the `parameter`] from which an effect contradicts the recordings at 95 %.
+
+    `above`: the effect is the stronger the smaller its parameter (a stiffness), so the true value lies above `value`.
+    """
+
+    effect: str
+    parameter: str
+    value: float
+    above: bool
+
+
+@dataclass(frozen=True)
+class Case:
+    """One start of one way in which an effect may act, with the parameter that is its strength."""
+
+    variant: Variant
+    start: Start
+    parameter: str
+
+    @property
+    def above(self) -> bool:
+        """Whether a smaller value makes it stronger."""
+        return EFFECT[self.variant.effect].parameter(self.parameter).inverse
+
+    def at(self, factor: float) -> Start:
+        """The start with its strength multiplied by a factor."""
+        value = self.start[self.parameter]
+        return {**self.start, self.parameter: value / factor if self.above else value * factor}
+
+    def factors(self, fit: Fit) -> tuple[float, float]:
+        """The smallest and the largest factor at which the strength is one that a search tries."""
+        name = f"{self.variant.effect}.{self.parameter}"
+        axis = Coordinates((name,), fit.fitter.nominal, fit.fitter.data.duration).axes[0]
+        own = abs(self.start[self.parameter])
+        low, high = max(axis.value(axis.lower), 1e-12 * own), axis.value(axis.upper)
+        return (own / high, own / low) if self.above else (low / own, high / own)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the recordings say of an effect: its `limit`, if any, and the evidence that it could leave at most."""
+
+    limit: Limit | None
+    mark: float
+
+
+def seen(fit: Fit, candidates: Sequence[tuple[Variant, list[dict[str, float]]]], pool: Executor) -> dict[str, Seen]:
+    """What the recordings say of each effect among the `candidates` that a `fit`, with all drifts free, has not.
+
+    `candidates` are ways to act with their starts, as `inference.shortlist.forms` gives them.
+    """
+    _ = fit.basis
+    cases: dict[str, list[Case]] = {}
+    for variant, starts in candidates:
+        strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
+        if variant.effect not in fit.explanation.effects and len(strengths) == 1:
+            able = [start for start in starts if start[strengths[0]] != 0.0]
+            some = able[:: max(math.ceil(len(able) / STARTS), 1)]
+            cases.setdefault(variant.effect, []).extend(Case(variant, start, strengths[0]) for start in some)
+    found = pool.map(lambda several: _of_effect(fit, several), cases.values())
+    return {effect: each for effect, each in zip(cases, found, strict=True) if each is not None}
+
+
+def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
+    """The weakest limit and the largest mark over the ways in which one effect may act by one of its strengths."""
+    each = [_of_case(fit, case) for case in cases if case.parameter == cases[0].parameter]
+    known = [one for one in each if one is not None]
+    if not known:
+        return None
+    mark = max(one.mark for one in known)
+    limits = [one.limit for one in known if one.limit is not None]
+    if len(limits) < len(each):
+        return Seen(None, mark)
+    weakest = min if limits[0].above else max
+    return Seen(weakest(limits, key=lambda limit: limit.value), mark)
+
+
+def _of_case(fit: Fit, case: Case) -> Seen | None:
+    """The strength that is excluded; None where the effect cannot be added to the model."""
+    least, largest = case.factors(fit)
+    left = fit.fitted - fit.basis @ (fit.basis.T @ fit.fitted)
+    allowed = ONE_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
+    factor, mark = 1.0, 0.0
+    for step in range(STEPS):
+        change = _change(fit, case, factor)
+        if change is None:
+            return None
+        size = float(change @ change)
+        if step == 0:
+            mark = size * factor**2 / (fit.repetition * max(fit.ratio**2, 1.0))
+        if size <= 0.0:
+            return Seen(None, mark)
+        best = max(-float(change @ left) / size, 0.0)
+        following = max(best + math.sqrt(allowed / size), least)
+        if following > largest:
+            return Seen(None, mark)
+        found = abs(math.log(following / factor)) < CLOSE
+        factor = following
+        if found:
+            break
+    possible = fit.chi2 - size * best**2 + allowed
+    for _ in range(RAISED):
+        if not _fits(fit, case, factor, possible):
+            return Seen(_limit(fit, case, factor), mark)
+        factor *= WIDENED
+        if factor > largest:
+            break
+    return Seen(None, mark)
+
+
+def _change(fit: Fit, case: Case, factor: float) -> np.ndarray | None:
+    """What a unit of the factor changes in the residual beside all parameters; None where there is no such model."""
+    fitter = fit.fitter
+    try:
+        models = fitter.models(fit.explanation, in_order(_values(fit, case, factor), fitter.nominal))
+    except InputError:
+        return None
+    change = (fitter.residual(*models)[fitter.data.train] - fit.residual[fitter.data.train]) / factor
+    return np.asarray(change - fit.basis @ (fit.basis.T @ change))
+
+
+def _values(fit: Fit, case: Case, factor: float) -> dict[str, float]:
+    """All values with the effect at a factor of its start, its other numbers as there."""
+    return {**added(fit.values, case.variant, case.at(factor)), **_fixed(case)}
+
+
+def _fixed(case: Case) -> dict[str, float]:
+    return {f"{case.variant.effect}.{name}": value for name, value in case.variant.fixed}
+
+
+def _fits(fit: Fit, case: Case, factor: float, possible: float) -> bool:
+    """Whether the parameters can make a strength possible: a short fit beside it ends below a `possible` chi2."""
+    effect = EFFECT[case.variant.effect]
+    if any(parameter.above for parameter in effect.parameters):
+        # what is counted from a parameter would vanish in a fit of that parameter
+        return False
+    try:
+        beside = fit.fitter.fit(fit.explanation, in_order(_values(fit, case, factor), fit.fitter.nominal), FOLLOWING)
+    except InputError:
+        return False
+    return beside.chi2 <= possible
+
+
+def _limit(fit: Fit, case: Case, factor: float) -> Limit | None:
+    """The strength at a factor, counted from the fit; None where it is beyond what is declared."""
+    declared = EFFECT[case.variant.effect].parameter(case.parameter)
+    value = _values(fit, case, factor)[f"{case.variant.effect}.{case.parameter}"]
+    if not declared.minimum <= value <= declared.maximum:
+        return None
+    return Limit(case.variant.effect, case.parameter, abs(value), case.above)

@@ -1,1 +1,0 @@
-"""The remainder that no explanation accounts for: physics that several recordings share, and the shape of the rest."""

@@ -1,1 +1,0 @@
-"""The search: which explanations are possible, and how well each of them fits."""

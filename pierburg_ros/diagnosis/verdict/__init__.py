@@ -1,1 +1,0 @@
-"""The result of a search: the verdict, how sure each effect is, and what cannot be distinguished."""

@@ -1,0 +1,67 @@
+"""A base parameter that changed in the middle of a recording: read off the balance, then fitted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.coordinates import Coordinates, in_order
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
+from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.least_squares import jacobian
+from pierburg_ros.inference.shortlist import balanced
+
+MOMENTS = 60
+"""Moments of a recording at which a change is tried. Work: a fit moves a moment on from there; not varied."""
+EARLIEST = 0.05
+"""Share of the recording before and after a change. Derived: a fit searches it within 3 to 97 % of the recording."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A start of a fit in which a parameter changes: the explanation, and values by dotted name."""
+
+    explanation: Explanation
+    values: dict[str, float]
+
+
+def changes(fit: Fit, balance: Balance) -> list[Change]:
+    """The change of each drifted parameter of a `fit` that would lower the error of the balance most, best first.
+
+    None for several recordings: a change is at a time of one.
+    """
+    if len(balance.motions) > 1 or fit.explanation.changed is not None:
+        return []
+    nominal, names = fit.fitter.nominal, tuple(name for name in fit.explanation.drifted if "." not in name)
+    acting = fit.explanation.effects
+    values, inside = balanced(balance, nominal, names, fit.values, acting)
+    coordinates = Coordinates(names, nominal, balance.duration)
+    point = coordinates.point(values)
+
+    def residual(at: np.ndarray) -> np.ndarray:
+        return inside.residual(in_order({**values, **coordinates.values(at)}, nominal), acting)
+
+    left = residual(point)
+    slopes = jacobian(residual, point, left, *coordinates.bounds, coordinates.steps)
+    basis = np.linalg.qr(slopes)[0]
+    left = left - basis @ (basis.T @ left)
+    time, end = inside.motions[0].time, balance.duration
+    found = []
+    for place, name in enumerate(names):
+        for moment in np.linspace(EARLIEST, 1.0 - EARLIEST, MOMENTS) * end:
+            column = np.where(time >= moment, slopes[:, place], 0.0)
+            column = column - basis @ (basis.T @ column)
+            size = float(column @ column)
+            if size > 0.0:
+                step = -float(column @ left) / size
+                found.append((step**2 * size, name, float(moment), step))
+    best: dict[str, Change] = {}
+    for _, name, moment, step in sorted(found, reverse=True):
+        if name not in best:
+            axis = coordinates.axes[names.index(name)]
+            after = axis.value(float(np.clip(axis.coordinate(values[name]) + step, axis.lower, axis.upper)))
+            own = Explanation(tuple(n for n in fit.explanation.drifted if n != name), fit.explanation.variants, name)
+            best[name] = Change(own, {**values, name + AFTER: after, name + WHEN: moment})
+    return list(best.values())
