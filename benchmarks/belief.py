@@ -13,11 +13,10 @@ from pathlib import Path
 
 import numpy as np
 from machine import write_section
+from pierburg_ros.diagnosis.search.belief import of_effect
 from scipy.optimize import minimize
 from scipy.special import expit
 from stated import table
-
-from pierburg_ros.diagnosis.search.belief import of_effect
 
 BOUNDS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 """Between which probabilities are counted together."""

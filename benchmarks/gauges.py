@@ -19,11 +19,11 @@ from typing import Any
 
 import numpy as np
 from machine import machine, write_section
+from pierburg_ros.diagnosis.search.candidates import possible
 
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.diagnosis.diagnose import diagnose
 from pierburg_ros.diagnosis.schema import Diagnosis
-from pierburg_ros.diagnosis.search.candidates import possible
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.proof.gauge import Gauge
 from pierburg_ros.recording import Channel, Recording

@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-import pierburg_ros as pr
-from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.disturbance.touched import untouched
 from pierburg_ros.diagnosis.report.horizons import horizons
 from pierburg_ros.diagnosis.search.candidates import drifting
 from pierburg_ros.estimation.data import Data, all_training, data_of, in_parts
 from pierburg_ros.estimation.estimator import Estimator
+
+import pierburg_ros as pr
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording, read_recording
