@@ -17,7 +17,7 @@ from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 TURN_WINDOW = 11
 """Number of samples in the filter of the motion. Derived: the velocity at 500 Hz is then known to 48 noises per second,
 and an order that passes in fewer samples than these is not seen."""
-FULL_TURN = 2.0 * math.pi
+WHOLE_TURN = 2.0 * math.pi
 """Angle after which a shaft is at the same place again [rad]. Derived: one turn in radian."""
 WHOLE = 0.9
 """Smallest share of a turn that must be measured for a map of it. Chosen: the orders determine the missing tenth."""
@@ -51,11 +51,11 @@ def with_turn(data: Data, model: Model) -> Model | None:
     if not motions or not all(orders_of([motion], model)[0] for motion in motions):
         return None
     orders, cosines, sines = orders_of(motions, model)
-    angle = np.linspace(0.0, FULL_TURN, RESIDUAL_ANGLES)
+    angle = np.linspace(0.0, WHOLE_TURN, RESIDUAL_ANGLES)
     turns = np.outer(angle, orders)
     torque = np.cos(turns) @ cosines + np.sin(turns) @ sines
     return model.with_residual(
-        {"angle": angle, "velocity": np.zeros(1), "torque": torque[:, np.newaxis], "period": FULL_TURN}
+        {"angle": angle, "velocity": np.zeros(1), "torque": torque[:, np.newaxis], "period": WHOLE_TURN}
     )
 
 
@@ -65,7 +65,7 @@ def goes_round(model: Model, run: Run) -> bool:
     free = math.isinf(actuator.upper_stop - actuator.lower_stop) and actuator.motion == "rotary"
     if not free or actuator.drive == "voltage" or actuator.quantity != "position" or run.time.size <= 2 * TURN_WINDOW:
         return False
-    return float(np.ptp(decoded(model, run.measured))) >= WHOLE * FULL_TURN
+    return float(np.ptp(decoded(model, run.measured))) >= WHOLE * WHOLE_TURN
 
 
 def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, Signal]:
@@ -114,7 +114,7 @@ def _finest(motions: list[Motion]) -> int:
     """The highest order that the samples resolve, two to a period; 0 where the shaft rests."""
     steps = np.concatenate([np.abs(np.diff(each.angle)) for each in motions])
     steps = steps[steps > 0.0]
-    return int(0.5 * FULL_TURN / float(np.quantile(steps, SLOW_PART))) if steps.size else 0
+    return int(0.5 * WHOLE_TURN / float(np.quantile(steps, SLOW_PART))) if steps.size else 0
 
 
 def _least_squares(known: Signal, wanted: Signal, kept: Flags) -> Signal:
