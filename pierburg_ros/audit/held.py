@@ -141,8 +141,9 @@ def base(motion: Motion, nominal: Model) -> Iterator[Column]:
 def possible(motion: Motion, nominal: Model) -> Iterator[Column]:
     """What every effect that the actuator may have adds, at a few of its starts."""
     actuator, scales, angle = nominal.actuator, nominal.scales, motion.whole.angle
-    duration = float(motion.whole.time[-1])
-    span = Span(duration / scales.time, float(np.min(angle)) / scales.angle, float(np.max(angle)) / scales.angle)
+    # a few rhythms of a longer recording lie no closer
+    duration = min(float(motion.whole.time[-1]) / scales.time, float(MOST))
+    span = Span(duration, float(np.min(angle)) / scales.angle, float(np.max(angle)) / scales.angle)
     for effect in EFFECTS:
         if effect.along is None or effect.dead_time or actuator.obstacle(effect):
             continue
