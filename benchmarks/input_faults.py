@@ -157,7 +157,7 @@ FAULTS = (
     Made("time: milliseconds for seconds", timed(1e3), ("time",), "unit: ms"),
     Made("time: microseconds for seconds", timed(1e6), ("time",), "unit: us"),
     Made("time: nanoseconds for seconds", timed(1e9), ("time",), "unit: ns"),
-    Made("time: a thousandth", timed(1e-3), ("time",), "seconds"),
+    Made("time: a thousandth", timed(1e-3), ("time",), "unit: s"),
     Made("supply voltage: millivolts for volts", supply(lambda v: 1e3 * v), ("supply_voltage",), "millivolts"),
 )  # fmt: skip
 
