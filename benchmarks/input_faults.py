@@ -377,27 +377,17 @@ def blamed(what: str, sets: list[list[Recording]], nominal: Model) -> Clean:
 def page(rows: list[tuple[str, str, int, int]], clean: list[Clean]) -> str:
     """The page of docs."""
     text = HEAD.format(found=sum(row[2] for row in rows), tried=sum(row[3] for row in rows))
-    for title, chosen in (("All", all_found), ("Some", some_found), ("None", none_found)):
-        text += f"- {title}: {'; '.join(told_in_short(row) for row in rows if chosen(row))}.\n"
+    found: dict[str, tuple[int, int]] = {}
+    for name, _, told, tried in rows:
+        before = found.get(name, (0, 0))
+        found[name] = before[0] + told, before[1] + tried
+    every = [name for name, (told, tried) in found.items() if told == tried]
+    never = [name for name, (told, _) in found.items() if not told]
+    some = [f"{name} ({told} of {tried})" for name, (told, tried) in found.items() if 0 < told < tried]
+    for title, names in (("Always", every), ("Sometimes", some), ("Never", never)):
+        text += f"- {title}: {'; '.join(names)}.\n"
     text += CLEAN
     return text + "".join(f"| {what} | {tried} | {wrong} |\n" for what, tried, wrong in clean)
-
-
-def told_in_short(row: tuple[str, str, int, int]) -> str:
-    name, kind, found, tried = row
-    return f"{name} ({kind}, {found} of {tried})"
-
-
-def all_found(row: tuple[str, str, int, int]) -> bool:
-    return row[2] == row[3] > 0
-
-
-def none_found(row: tuple[str, str, int, int]) -> bool:
-    return row[2] == 0 < row[3]
-
-
-def some_found(row: tuple[str, str, int, int]) -> bool:
-    return 0 < row[2] < row[3]
 
 
 HEAD = """\
