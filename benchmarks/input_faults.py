@@ -396,25 +396,18 @@ HEAD = """\
 A wrong unit, sign, clock or signal is found before anything is searched for. The page is written by
 `python benchmarks/input_faults.py --shared FOLDER --trials FOLDER`.
 
-There is one test. Along the measured motion the motor's torque must equal load, friction and inertia. The numbers of
-the description are free within a factor of 10, and every known effect may act; but no friction drives, no motor pulls
-the other way and no shaft is beyond its stops. A recording of which that leaves at most 5 % of the command's variation
-is what it is read as. Otherwise each fault of a table is undone in turn. One is told where less than 5 % is left then,
-less than a fifth of what was, and more than chance does. Where nothing mends the recording, physics is missing: nothing
+There is one test. Along the measured motion the motor's torque must equal load, friction and inertia. Numbers are free within a
+factor of 10 and every known effect may act, but no friction drives and no shaft is beyond its stops. A recording of which that leaves at most 5 % of the command's variation
+is what it is read as. Otherwise each fault of a table is undone in turn. One is told where less than 5 % and a fifth is left then. Where nothing mends the recording, physics is missing: nothing
 is said, and the diagnosis goes on.
 
-A signal that never changes, and a duty that equals the recorded setpoints, show by themselves. A shaft on a pendulum
-swings without a command, and so does one whose open bridge is recorded.
-
 Where a fault is told, `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the final line of
-the signal map, what is written there already included. The verdict is `unexplained` and the exit status 0. `--force`
-goes on. A signal that is certainly right is `exact: true` in the signal map, or `--exact duty`: its sign, scale and
-name are then not doubted; its stamps are. `identify` and `replay` print the same lines as a warning.
+the signal map, what is written there already included. `--force` goes on. With `exact: true` in the signal map, or
+`--exact duty`, a signal is not doubted, only its stamps.
 
 ## Faults that are told
 
-{found} of {tried}, made of practice recordings (valve) and of the XL330 (bench). The right signal in the right words
-counts, from the audit or from the reader.
+{found} of {tried}, made of practice recordings (valve) and of the XL330 (bench).
 
 """
 CLEAN = """
