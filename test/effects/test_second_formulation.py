@@ -13,6 +13,7 @@ from pierburg_ros.proof.formulation import simulate_textbook
 NOMINAL = Model.nominal(read_actuator("pierburg"))
 CASES = {
     "viscous_friction": {"coefficient": 0.03},
+    "drag": {"quadratic": 0.01, "cubic": 0.002},
     "static_friction": {"breakaway_torque": 0.25, "stribeck_velocity": 0.1},
     "presliding": {"stiffness": 12.0, "damping": 0.02},
     "load_dependent_friction": {"coefficient": 0.1},

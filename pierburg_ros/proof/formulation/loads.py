@@ -58,9 +58,9 @@ def detent(angle: float, p: Any) -> float:
 
 @kernel
 def drag(velocity: float, p: Any) -> float:
-    """Slope of the square-law drag outside the catalogue [N.m.s/rad]: torque coefficient abs(w) w."""
-    slope: float = p.square_drag.coefficient * abs(velocity)
-    return slope
+    """Torque over velocity of what resists by its square and cube [N.m.s/rad], at the velocity before the step."""
+    over: float = p.drag.quadratic * abs(velocity) + p.drag.cubic * velocity**2
+    return over
 
 
 @kernel
