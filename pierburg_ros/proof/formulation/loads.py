@@ -57,13 +57,6 @@ def detent(angle: float, p: Any) -> float:
 
 
 @kernel
-def drag(velocity: float, p: Any) -> float:
-    """Torque over velocity of what resists by its square and cube [N.m.s/rad], at the velocity before the step."""
-    over: float = p.drag.quadratic * abs(velocity) + p.drag.cubic * velocity**2
-    return over
-
-
-@kernel
 def stop(state: Any, p: Any, h: float) -> tuple[float, float]:
     """Compliant stops at the end of the step as (a, b): torque a + b w [N.m], [N.m.s/rad], one-sided."""
     stiffness = p.stop_compliance.stiffness
