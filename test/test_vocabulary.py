@@ -9,13 +9,6 @@ from support.documentation import ROOT
 from support.named_numbers import NamedNumber, numbers_of
 
 DOCS = ROOT / "docs"
-GOING = ("estimation/", "audit/")
-GOING += tuple(
-    f"diagnosis/{room}/" for room in ("search", "remainder", "disturbance", "evidence", "limits", "location", "verdict")
-)
-"""What the new inference takes the place of."""
-REWRITTEN = ("inference/", "diagnosis/", "identification/")
-"""Rooms at work on that inference; names that only they share are renamed there."""
 ABANDONED = re.compile(
     r"\b(told|heard|vouch\w*|witness\w*|stood|wander\w*|remainders?)\b|\b(an?|the|its|no|each|every|this) tells?\b",
     flags=re.IGNORECASE,
@@ -32,8 +25,7 @@ def collisions() -> dict[str, list[NamedNumber]]:
     """Named numbers whose name has another value, or another meaning, elsewhere in the package."""
     named = defaultdict(list)
     for found in numbers_of():
-        if not found.file.startswith(GOING):
-            named[found.name].append(found)
+        named[found.name].append(found)
     return {name: each for name, each in named.items() if ambiguous(each)}
 
 
@@ -47,18 +39,8 @@ def listed(collided: dict[str, list[NamedNumber]]) -> str:
     return "\n".join(f"{name}: {', '.join(each.file for each in found)}" for name, found in sorted(collided.items()))
 
 
-def shared_by_others(found: list[NamedNumber]) -> bool:
-    """Whether a room that is not at work on the new inference has the name."""
-    return any(not each.file.startswith(REWRITTEN) for each in found)
-
-
 def test_a_constant_has_one_meaning():
-    assert not listed({name: found for name, found in collisions().items() if shared_by_others(found)})
-
-
-@pytest.mark.xfail(reason="these names are at work in the rooms of the new inference")
-def test_a_constant_has_one_meaning_in_the_inference_too():
-    assert not listed({name: found for name, found in collisions().items() if not shared_by_others(found)})
+    assert not listed(collisions())
 
 
 def test_two_meanings_of_a_name_are_seen():

@@ -25,7 +25,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
-FEWEST = 20
+MOMENTS_OF_PARAMETER = 20
 """Moments of motion for each parameter from which a balance gives a start. Derived: neighbouring moments share most of
 a window, so that these are some five independent ones."""
 
@@ -160,7 +160,7 @@ def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) 
 def balanced_starts(fitter: Fitter, free: Sequence[str]) -> list[dict[str, float]]:
     """The values with which torques balance along the motion of the recordings; none where these tell too little."""
     nominal, balance = fitter.nominal, balance_of(fitter)
-    if balance.size < FEWEST * len(free):
+    if balance.size < MOMENTS_OF_PARAMETER * len(free):
         return []
     values, _ = balanced(balance, nominal, free, nominal.values, nominal.active_effects)
     return [in_order(values, nominal)]

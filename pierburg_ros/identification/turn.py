@@ -14,7 +14,7 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
-WINDOW = 11
+FILTER_SAMPLES = 11
 """Number of samples in the filter of the motion. Derived: the velocity at 500 Hz is then known to 48 noises per second,
 and an order that passes in fewer samples than these is not seen."""
 TURN = 2.0 * math.pi
@@ -27,16 +27,16 @@ hundred."""
 NEIGHBOURS = 12
 """Number of orders on either side that give the usual power around an order. Chosen: few enough for the spectrum to be
 even there; not varied."""
-MOST = 128
+HIGHEST_ORDER = 128
 """Highest order that is tested. Chosen: twice the 64 poles and slots that rotors usually have at most."""
 SLOW_PART = 0.1
 """Share of the steps between samples that are finer than the step that sets the highest order. Chosen: the slow tenth
 of a movement shows orders for which the rest is too fast."""
-SAMPLES = 8
+MOMENTS_OF_UNKNOWN = 8
 """Smallest number of moments for each unknown. Chosen: neighbouring moments share most of their window."""
 MENTIONED = 4
 """Number of orders that are named in words. Chosen: a sentence holds no more; the map holds all."""
-LEAST = 0.01
+WEAKEST_ORDER = 0.01
 """Smallest amplitude of an order that is named, as a share of the strongest. Chosen: a smaller one is not visible
 beside it."""
 
@@ -47,7 +47,7 @@ def with_turn(data: Data, model: Model) -> Model | None:
     Every recording that turns round must show an order by itself: what wanders can be mistaken for one.
     """
     turning = [run for run in data.runs if goes_round(model, run)]
-    motions = [motion_of(run, model, WINDOW * float(np.median(np.diff(run.time))) / WIDTH) for run in turning]
+    motions = [motion_of(run, model, FILTER_SAMPLES * float(np.median(np.diff(run.time))) / WIDTH) for run in turning]
     if not motions or not all(orders_of([motion], model)[0] for motion in motions):
         return None
     orders, cosines, sines = orders_of(motions, model)
@@ -63,7 +63,12 @@ def goes_round(model: Model, run: Run) -> bool:
     """Whether a shaft without stops, driven by a current or torque, is measured over most of a turn."""
     actuator = model.actuator
     free = math.isinf(actuator.upper_stop - actuator.lower_stop) and actuator.motion == "rotary"
-    if not free or actuator.drive == "voltage" or actuator.quantity != "position" or run.time.size <= 2 * WINDOW:
+    if (
+        not free
+        or actuator.drive == "voltage"
+        or actuator.quantity != "position"
+        or run.time.size <= 2 * FILTER_SAMPLES
+    ):
         return False
     return float(np.ptp(decoded(model, run.measured))) >= WHOLE * TURN
 
@@ -76,7 +81,7 @@ def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, S
     wanted = np.concatenate([missing(each, model.values, model.active_effects) for each in motions])
     hanging = [1] if model.values.get("gravity_torque", 0.0) else []
     known = np.concatenate([_columns(each, hanging) for each in motions])
-    highest = min(_finest(motions), MOST)
+    highest = min(_finest(motions), HIGHEST_ORDER)
     tested = range(1, highest + NEIGHBOURS + 1)
     ripples = [np.concatenate([each.ripple(order) for each in motions], axis=1) for order in tested]
     kept, orders = np.ones(wanted.size, dtype=bool), list[int]()
@@ -86,7 +91,7 @@ def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, S
         kept = np.abs(left) <= 2.0 * OUTLYING * np.median(np.abs(left))
         power = np.array([float(np.sum(np.square(ripple[:, kept] @ left[kept]))) for ripple in ripples])
         order = _next_order(power, highest, [*hanging, *orders])
-        if order == 0 or known.shape[1] > wanted.size // SAMPLES:
+        if order == 0 or known.shape[1] > wanted.size // MOMENTS_OF_UNKNOWN:
             return orders, found[-2 * len(orders) :: 2], found[-2 * len(orders) + 1 :: 2]
         orders.append(order)
         sine, cosine = ripples[order - 1]
@@ -96,7 +101,7 @@ def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, S
 def described_turn(torque: Signal, unit: str) -> str:
     """The strongest orders of a `torque` over a turn, shape (angles, 1), in words."""
     amplitude = 2.0 * np.abs(np.fft.rfft(torque[:-1, 0])) / (torque.shape[0] - 1)
-    least = LEAST * float(np.max(amplitude))
+    least = WEAKEST_ORDER * float(np.max(amplitude))
     strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > least]
     orders = ", ".join(f"{amplitude[order]:#.2g} {unit} {order} times" for order in strongest)
     return f"it repeats itself with every turn, with {orders}"

@@ -26,7 +26,7 @@ HALF_KNOWN = 0.5
 should act on a value known to no better than a half; a convention of the report."""
 DEVIATIONS = 4.0
 """Standard deviations in the range of a parameter. Given: its ends count as two either way."""
-TOLD = 0.5
+NARROWED = 0.5
 """Share of the standard deviation before a recording below which the one after it must be for the recording to tell a
 quantity. Derived: three quarters of what is known then come from the recording."""
 FREE = 10.0
@@ -75,7 +75,7 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     ranges = (upper - lower) / DEVIATIONS
     before = np.where([name in beside for name in whole.names], ranges, FREE * (upper - lower))
     known = spread(slopes_at(fit, whole), residuals, before)
-    told = np.sqrt(np.diagonal(known.matrix)) < TOLD * ranges
+    told = np.sqrt(np.diagonal(known.matrix)) < NARROWED * ranges
     on_bound = np.minimum(point - lower, upper - point) <= ON_BOUND * (upper - lower)
     found = {}
     for name in own.names:

@@ -36,9 +36,7 @@ def test_counts_gaps_and_jitter():
     kept = (run.time < 4.0) | (run.time > 4.5)
     random = np.random.default_rng(0)
     time = np.sort(run.time + random.uniform(0.0, 0.001, run.time.size))
-    gappy = replace(
-        run, time=time[kept], measured=run.measured[kept], block=run.block[kept], counts=run.counts[kept]
-    )
+    gappy = replace(run, time=time[kept], measured=run.measured[kept], block=run.block[kept], counts=run.counts[kept])
     quality = data_quality([gappy], PIERBURG, NOISE)
     assert quality.gaps == 1 and "gaps" in kinds(gappy)
     assert quality.jitter == pytest.approx(0.001 / np.sqrt(6.0), rel=0.1)

@@ -92,7 +92,10 @@ def test_an_effect_is_believed_for_a_reason_with_its_numbers(rival: Explanation,
 
 
 def test_what_is_not_sure_enough_is_told_with_its_probability() -> None:
-    unsure = [Doubted(id=effect, confidence=sure, explanation="") for effect, sure in (("backlash", 0.43), ("sensor_lag", 0.081))]
+    unsure = [
+        Doubted(id=effect, confidence=sure, explanation="")
+        for effect, sure in (("backlash", 0.43), ("sensor_lag", 0.081))
+    ]
     text = said("unexplained", left=LEFT, unsure=unsure)
     assert text.startswith(
         "An error remains that no effect explains. Not sure enough to be named: backlash (43 %), sensor lag (8.1 %). "
