@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import DECLARED, EFFECTS, Effect
+from pierburg_ros.effects import DECLARED, EFFECTS, OUTSIDE, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.bounded import Bounded, Column
@@ -134,7 +134,7 @@ def base(motion: Motion, nominal: Model) -> Iterator[Column]:
     braked = motion.driven(values, motion.command) - motion.motor_torque(values)
     if np.any(braked):
         yield braked, 1.0 / DESCRIBED_WITHIN, math.inf
-    low, high = DECLARED["external_load.torque"].expected(nominal.scales)
+    low, high = DECLARED[OUTSIDE].expected(nominal.scales)
     yield np.ones(motion.samples.size), low, high
 
 

@@ -91,8 +91,8 @@ def variables(motion: Motion) -> dict[str, Signal]:
 def block_length(time: Signal, energy: Signal, own: float) -> float:
     """Length [s] of blocks that keep correlated samples together: twice the correlation time of `energy`.
 
-    It is at least `SHUFFLED_BLOCK`; `own` is the actuator's own time [s]. The length is at most a twentieth of the recording, or too few orders would be
-    left.
+    It is at least `SHUFFLED_BLOCK`; `own` is the actuator's own time [s]. The length is at most a twentieth of the
+    recording, or too few orders would be left.
     """
     step = 0.1 * SHUFFLED_BLOCK * own
     grid = np.arange(time[0], time[-1], step)
