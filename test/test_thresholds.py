@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from support.named_numbers import GROUNDS, PACKAGE, named_numbers, numbers_of, parts
+from support.named_numbers import GROUNDS, named_numbers, numbers_of, parts
 
 ROOMS = ("inference", "audit", "diagnosis", "identification", "fleets")
 """Folders whose numbers decide what is concluded from recordings."""

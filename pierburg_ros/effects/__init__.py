@@ -69,4 +69,16 @@ STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
 OUTSIDE = f"{external_load.EFFECT.id}.{external_load.EFFECT.strength[0]}"
 """Dotted name of a load torque from outside."""
 
-__all__ = ["ADDED", "COPPER", "DECLARED", "EFFECT", "EFFECTS", "GEARED", "OUTSIDE", "ROUNDING", "STEP", "Effect", "Parameter"]
+__all__ = [
+    "ADDED",
+    "COPPER",
+    "DECLARED",
+    "EFFECT",
+    "EFFECTS",
+    "GEARED",
+    "OUTSIDE",
+    "ROUNDING",
+    "STEP",
+    "Effect",
+    "Parameter",
+]
