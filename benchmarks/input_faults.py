@@ -419,10 +419,10 @@ What is not found is mostly tied:
 - A duty that changes every second is logged often enough at 50 Hz. On the servo a tenth of the rate costs 0.9 to 1.4
   times as much of the motion as the whole (n = 8). It shows only as an answer half an interval early, as in clean runs.
 - A sensor that is off without ever reading beyond a stop equals drifts.
-- A clock is told where the lag grows, no one lag does for all parts, and no delay explains the motion as well. Slow
+- A clock is found where the lag grows, no one lag does for all parts, and no delay explains the motion as well. Slow
   motions correlate at any lag: a servo's run of 5 s does not tell 1 %. A clock off by more than 2 % is not looked for.
 
-Two actuators as one are told by what one set of numbers loses beside their own. On recordings that had no part in the
+Two actuators as one are found by what one set of numbers loses beside their own. On recordings that had no part in the
 choice of that limit, 20 of 24 pairs of different valves are found, and none of 21 pairs of one valve with an effect is
 blamed. A winding that is 75 K hotter is blamed too; where its temperature alone would be a reason, the line says so,
 and by how many kelvin. 50 K pass.

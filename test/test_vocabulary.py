@@ -14,10 +14,6 @@ ABANDONED = re.compile(
     flags=re.IGNORECASE,
 )
 """Words of this project alone, and "tell" as a noun; docs/glossary.md has those of the field."""
-PENDING = {
-    "docs/input_faults.md": "written by benchmarks/input_faults.py, which is rewritten with the new inference",
-    "docs/reference/diagnosis_json.md": "written from diagnosis/schema.py, which is rewritten with the new inference",
-}
 PAGES = ["README.md", *sorted(str(path.relative_to(ROOT)) for path in DOCS.rglob("*.md"))]
 
 
@@ -49,10 +45,7 @@ def test_two_meanings_of_a_name_are_seen():
     assert not ambiguous([NamedNumber("A", "1", f"{says}.py", says, "", "") for says in ("Time.", "")])
 
 
-@pytest.mark.parametrize(
-    "page",
-    [pytest.param(page, marks=pytest.mark.xfail(reason=PENDING[page])) if page in PENDING else page for page in PAGES],
-)
+@pytest.mark.parametrize("page", PAGES)
 def test_a_page_uses_the_words_of_the_field(page):
     lines = (ROOT / page).read_text(encoding="utf-8").splitlines()
     assert not [f"{page}:{k}: {line}" for k, line in enumerate(lines, 1) if ABANDONED.search(line)]
