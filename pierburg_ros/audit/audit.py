@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from pierburg_ros.audit.fault import Fault
 from pierburg_ros.audit.held import DESCRIBED_WITHIN, Held, Weighed
 from pierburg_ros.audit.rows import Row, facts, rows
+from pierburg_ros.inference.data import refuse_others
 from pierburg_ros.inference.evidence import SIGNIFICANT, TIED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -27,7 +28,12 @@ BETTER = 0.2
 
 
 def audit(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
-    """Every signal of `recordings` that is not what it is read as, for an actuator like `nominal`; none if all are."""
+    """Every signal of `recordings` that is not what it is read as, for an actuator like `nominal`; none if all are.
+
+    InputError where they are recordings of another kind of actuator.
+    """
+    for recording in recordings:
+        refuse_others(recording, nominal.actuator)
     return [fault for recording in recordings for fault in faults(Held(recording, nominal))]
 
 

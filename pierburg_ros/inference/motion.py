@@ -68,7 +68,7 @@ class Filtered:
 
     def smooth(self, values: Signal, derivative: int = 0) -> Signal:
         """`values` or a derivative of them behind the filter."""
-        return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative, delta=self.step))
+        return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative) / self.step**derivative)
 
     @cached_property
     def ripples(self) -> dict[float, tuple[Signal, Signal]]:
