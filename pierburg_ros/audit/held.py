@@ -35,7 +35,8 @@ and a soft stop add as much."""
 STARTS_AS_COLUMNS = 4
 """Starts of each way in which an effect may act that make columns. Work: what lies between is nearly made of them."""
 MOST = 3000
-"""Samples of a motion that are weighed, evenly spread. Work: a fault shows throughout."""
+"""Samples of a motion that are weighed, evenly spread, and most in the actuator's own time. Work: a fault shows
+throughout."""
 SAMPLES = 40
 """Samples of a surely moving shaft below which nothing is said. Derived: nearly as many as there are columns."""
 LOADS = ("spring_preload", "spring_stiffness", "gravity_torque", "total_inertia", "coulomb_friction")
@@ -100,8 +101,8 @@ def seen(recording: Recording, nominal: Model) -> Motion | None:
         run = run_of(recording, nominal, 0, np.zeros(recording.time.size, dtype=np.int64))
     except InputError:
         return None
-    own = nominal.scales.time
-    if recording.duration < own or recording.time.size < SAMPLES:
+    own, step = nominal.scales.time, float(np.median(np.diff(recording.time)))
+    if recording.duration < own or recording.time.size < SAMPLES or not step / DESCRIBED_WITHIN <= own <= MOST * step:
         return None
     motion = motion_of(run, nominal, own)
     size = motion.samples.size
@@ -111,8 +112,7 @@ def seen(recording: Recording, nominal: Model) -> Motion | None:
 def impossible(recording: Recording, nominal: Model) -> float:
     """The share of the recording in which a reading lies beyond the stops, or a supply beyond what is accepted."""
     actuator, supply = nominal.actuator, recording.supply_voltage
-    share = 0.0
-    travel = actuator.upper_stop - actuator.lower_stop
+    share, travel = 0.0, actuator.upper_stop - actuator.lower_stop
     if math.isfinite(travel) and recording.quantity != "speed":
         angle = decoded(nominal, recording.measured, recording.quantity)
         low, high = actuator.lower_stop - PAST_STOP * travel, actuator.upper_stop + PAST_STOP * travel
@@ -140,9 +140,11 @@ def base(motion: Motion, nominal: Model) -> Iterator[Column]:
 
 def possible(motion: Motion, nominal: Model) -> Iterator[Column]:
     """What every effect that the actuator may have adds, at a few of its starts."""
-    actuator, scales, angle = nominal.actuator, nominal.scales, motion.whole.angle
-    duration = float(motion.whole.time[-1])
-    span = Span(duration / scales.time, float(np.min(angle)) / scales.angle, float(np.max(angle)) / scales.angle)
+    actuator, scales = nominal.actuator, nominal.scales
+    # a few starts of a longer or farther recording would lie no closer
+    duration = min(float(motion.whole.time[-1]) / scales.time, float(MOST))
+    angle = np.clip(motion.whole.angle / scales.angle, -float(SAMPLES), float(SAMPLES))
+    span = Span(duration, float(np.min(angle)), float(np.max(angle)))
     for effect in EFFECTS:
         if effect.along is None or effect.dead_time or actuator.obstacle(effect):
             continue

@@ -72,12 +72,11 @@ def of_command(held: Held) -> Iterator[Row]:
         yield linear(held, name, "a hundredth of the fraction", 100.0)
     if name == "duty" and float(np.min(values)) >= 0.0:
         yield linear(held, name, "0.5 stands for none", 2.0, -1.0)
-    if recording.quantity != "speed":
-        travel = actuator.upper_stop - actuator.lower_stop
-        mend = f"name the applied {name}: `{name}: {{topic: ...}}`"
-        for gain in (1.0, 1.0 / travel):
-            if gain > 0.0:
-                yield Row(name, f"a setpoint in place of the {name}", mend, partial(held.followed, gain))
+    travel = actuator.upper_stop - actuator.lower_stop
+    mend = f"name the applied {name}: `{name}: {{topic: ...}}`"
+    for gain in (1.0, 1.0 / travel) if recording.quantity != "speed" else ():
+        if gain > 0.0:
+            yield Row(name, f"a setpoint in place of the {name}", mend, partial(held.followed, gain))
 
 
 def of_sensor(held: Held) -> Iterator[Row]:

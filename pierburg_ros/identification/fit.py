@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,18 +15,19 @@ from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.inference.covariance import Covariance, at_least_effective
 from pierburg_ros.inference.data import Data, all_fitted
-from pierburg_ros.inference.evidence import rms
+from pierburg_ros.inference.evidence import EXPLAINED, rms
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fit, Fitter, rungs
 from pierburg_ros.inference.intervals import by_run, slopes_at
 from pierburg_ros.inference.motion import motion_of
+from pierburg_ros.inference.polish import polished
 from pierburg_ros.inference.replay import forgets, pull_of
 from pierburg_ros.inference.shortlist import balanced
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 from pierburg_ros.workers import workers
 
-MOMENTS_OF_PARAMETER = 20
+FEWEST_MOMENTS = 20
 """Moments of motion for each parameter from which a balance gives a start. Derived: neighbouring moments share most of
 a window, so that these are some five independent ones."""
 
@@ -149,18 +151,24 @@ def constants(data: Data, model: Model) -> tuple[float, ...]:
 
 
 def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) -> Fit:
-    """The fit of an explanation from some `values`, pulled ever more weakly."""
+    """The fit of an explanation from some `values`, pulled ever more weakly.
+
+    Where only noise is left then, and the actuator forgets its beginning, a last fit runs free: it is the most precise.
+    """
     first, *others = constants(fitter.data, fitter.nominal)
     found = fitter.pulled(first).fit(explanation, values)
     for constant in others:
         found = fitter.pulled(constant).fit(explanation, found.values)
-    return found
+    if found.ratio > EXPLAINED or not forgets(fitter.data.actuator):
+        return found
+    free = polished(fitter.pulled(math.inf).fit(explanation, found.values))
+    return free if free.ratio <= EXPLAINED else found
 
 
 def balanced_starts(fitter: Fitter, free: Sequence[str]) -> list[dict[str, float]]:
     """The values with which torques balance along the motion of the recordings; none where these tell too little."""
     nominal, balance = fitter.nominal, balance_of(fitter)
-    if balance.size < MOMENTS_OF_PARAMETER * len(free):
+    if balance.size < FEWEST_MOMENTS * len(free):
         return []
     values, _ = balanced(balance, nominal, free, nominal.values, nominal.active_effects)
     return [in_order(values, nominal)]

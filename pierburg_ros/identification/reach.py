@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.identification.fit import MOMENTS_OF_PARAMETER, Identified, balance_of, fit, fitter_of
+from pierburg_ros.identification.fit import FEWEST_MOMENTS, Identified, balance_of, fit, fitter_of
 from pierburg_ros.identification.turn import with_turn
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import in_order
@@ -17,7 +17,7 @@ from pierburg_ros.inference.intervals import ON_BOUND
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
 
-RANGES = 2
+RANGES_MOVED = 2
 """Number of times that the range of a search, a factor of 6 either way, is moved to where the fit left it. Chosen: a
 description that is off by a factor of 200 is better written anew."""
 
@@ -44,7 +44,7 @@ def fitted(
         if EXPLAINED * again.rmse < found.rmse:
             base, found = beside, again
     found, held = _held(found, base, model, recordings, jobs)
-    for _ in range(RANGES):
+    for _ in range(RANGES_MOVED):
         if not runaway(found):
             break
         found = fit(found.model, recordings, found.names, jobs)
@@ -62,7 +62,7 @@ def begun(
     if found.fit.ratio <= EXPLAINED:
         return model, found
     far = model
-    for _ in range(RANGES):
+    for _ in range(RANGES_MOVED):
         far = farther(far, balance_of(fitter_of(recordings, far)), free)
     again = fit(far, recordings, free, jobs)
     return (far, again) if again.rmse < found.rmse else (model, found)
@@ -74,7 +74,7 @@ def farther(model: Model, balance: Balance, free: Sequence[str]) -> Model:
     A search by ratios, which keeps them positive, would end at its bound where one is wrong by far.
     """
     names = [name for name in free if model.values[name] > 0.0 and model.range(name)[0] >= 0.0]
-    if not names or balance.size < MOMENTS_OF_PARAMETER * len(names):
+    if not names or balance.size < FEWEST_MOMENTS * len(names):
         return model
     now, effects = np.array([model.values[name] for name in names]), model.active_effects
 

@@ -14,10 +14,10 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.parameters import RESIDUAL_ANGLES
 
-FILTER_SAMPLES = 11
+TURN_WINDOW = 11
 """Number of samples in the filter of the motion. Derived: the velocity at 500 Hz is then known to 48 noises per second,
 and an order that passes in fewer samples than these is not seen."""
-TURN = 2.0 * math.pi
+WHOLE_TURN = 2.0 * math.pi
 """Angle after which a shaft is at the same place again [rad]. Derived: one turn in radian."""
 WHOLE = 0.9
 """Smallest share of a turn that must be measured for a map of it. Chosen: the orders determine the missing tenth."""
@@ -32,11 +32,11 @@ HIGHEST_ORDER = 128
 SLOW_PART = 0.1
 """Share of the steps between samples that are finer than the step that sets the highest order. Chosen: the slow tenth
 of a movement shows orders for which the rest is too fast."""
-MOMENTS_OF_UNKNOWN = 8
+MOMENTS_EACH = 8
 """Smallest number of moments for each unknown. Chosen: neighbouring moments share most of their window."""
 MENTIONED = 4
 """Number of orders that are named in words. Chosen: a sentence holds no more; the map holds all."""
-WEAKEST_ORDER = 0.01
+SMALLEST_NAMED = 0.01
 """Smallest amplitude of an order that is named, as a share of the strongest. Chosen: a smaller one is not visible
 beside it."""
 
@@ -47,15 +47,15 @@ def with_turn(data: Data, model: Model) -> Model | None:
     Every recording that turns round must show an order by itself: what wanders can be mistaken for one.
     """
     turning = [run for run in data.runs if goes_round(model, run)]
-    motions = [motion_of(run, model, FILTER_SAMPLES * float(np.median(np.diff(run.time))) / WIDTH) for run in turning]
+    motions = [motion_of(run, model, TURN_WINDOW * float(np.median(np.diff(run.time))) / WIDTH) for run in turning]
     if not motions or not all(orders_of([motion], model)[0] for motion in motions):
         return None
     orders, cosines, sines = orders_of(motions, model)
-    angle = np.linspace(0.0, TURN, RESIDUAL_ANGLES)
+    angle = np.linspace(0.0, WHOLE_TURN, RESIDUAL_ANGLES)
     turns = np.outer(angle, orders)
     torque = np.cos(turns) @ cosines + np.sin(turns) @ sines
     return model.with_residual(
-        {"angle": angle, "velocity": np.zeros(1), "torque": torque[:, np.newaxis], "period": TURN}
+        {"angle": angle, "velocity": np.zeros(1), "torque": torque[:, np.newaxis], "period": WHOLE_TURN}
     )
 
 
@@ -63,14 +63,9 @@ def goes_round(model: Model, run: Run) -> bool:
     """Whether a shaft without stops, driven by a current or torque, is measured over most of a turn."""
     actuator = model.actuator
     free = math.isinf(actuator.upper_stop - actuator.lower_stop) and actuator.motion == "rotary"
-    if (
-        not free
-        or actuator.drive == "voltage"
-        or actuator.quantity != "position"
-        or run.time.size <= 2 * FILTER_SAMPLES
-    ):
+    if not free or actuator.drive == "voltage" or actuator.quantity != "position" or run.time.size <= 2 * TURN_WINDOW:
         return False
-    return float(np.ptp(decoded(model, run.measured))) >= WHOLE * TURN
+    return float(np.ptp(decoded(model, run.measured))) >= WHOLE * WHOLE_TURN
 
 
 def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, Signal]:
@@ -91,7 +86,7 @@ def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, S
         kept = np.abs(left) <= 2.0 * OUTLYING * np.median(np.abs(left))
         power = np.array([float(np.sum(np.square(ripple[:, kept] @ left[kept]))) for ripple in ripples])
         order = _next_order(power, highest, [*hanging, *orders])
-        if order == 0 or known.shape[1] > wanted.size // MOMENTS_OF_UNKNOWN:
+        if order == 0 or known.shape[1] > wanted.size // MOMENTS_EACH:
             return orders, found[-2 * len(orders) :: 2], found[-2 * len(orders) + 1 :: 2]
         orders.append(order)
         sine, cosine = ripples[order - 1]
@@ -101,7 +96,7 @@ def orders_of(motions: list[Motion], model: Model) -> tuple[list[int], Signal, S
 def described_turn(torque: Signal, unit: str) -> str:
     """The strongest orders of a `torque` over a turn, shape (angles, 1), in words."""
     amplitude = 2.0 * np.abs(np.fft.rfft(torque[:-1, 0])) / (torque.shape[0] - 1)
-    least = WEAKEST_ORDER * float(np.max(amplitude))
+    least = SMALLEST_NAMED * float(np.max(amplitude))
     strongest = [order for order in np.argsort(amplitude)[::-1][:MENTIONED] if amplitude[order] > least]
     orders = ", ".join(f"{amplitude[order]:#.2g} {unit} {order} times" for order in strongest)
     return f"it repeats itself with every turn, with {orders}"
@@ -119,7 +114,7 @@ def _finest(motions: list[Motion]) -> int:
     """The highest order that the samples resolve, two to a period; 0 where the shaft rests."""
     steps = np.concatenate([np.abs(np.diff(each.angle)) for each in motions])
     steps = steps[steps > 0.0]
-    return int(0.5 * TURN / float(np.quantile(steps, SLOW_PART))) if steps.size else 0
+    return int(0.5 * WHOLE_TURN / float(np.quantile(steps, SLOW_PART))) if steps.size else 0
 
 
 def _least_squares(known: Signal, wanted: Signal, kept: Flags) -> Signal:

@@ -148,7 +148,7 @@ def minimise(
             break
         line, growth, before = _Tangent.at(at, slope(at)), 8.0, at.cost
         last = aim(line, SMALLEST_DAMPING)
-        if line.fall(last) <= tolerance * before:
+        if 0.0 <= line.fall(last) <= tolerance * before:
             at = min(at, moved(last), key=lambda each: each.cost)
             break
         for _ in range(REJECTED):

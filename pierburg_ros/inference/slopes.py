@@ -11,7 +11,7 @@ from pierburg_ros.arrays import Signal
 FINE = 1e-5
 """Difference step of a covariance, in the coordinates of the search. Derived: within the interval of any value known to
 0.01 %, with a rounding error of about 1e-11 of the residual."""
-FINEST_DIFFERENCE = 1e-7
+FINEST_STEP = 1e-7
 """Difference step where a bend lies within the fine one. Chosen: a hundredth of it; simulations of the stiffer effects
 are too noisy to begin with it. Not varied."""
 SMOOTH = 1e-4
@@ -49,7 +49,7 @@ def sharp(residual: Residual, point: Signal, bounds: Bounds) -> Signal:
     value = residual(point)
     slopes, bend = _bend(residual, point, value, bounds, FINE)
     if np.any(bend > SMOOTH):
-        closer, less = _bend(residual, point, value, bounds, FINEST_DIFFERENCE)
+        closer, less = _bend(residual, point, value, bounds, FINEST_STEP)
         slopes = np.where(less < bend, closer, slopes)
     noise = float(np.linalg.norm(value)) / np.sqrt(value.size)
     for index in np.flatnonzero(np.linalg.norm(slopes, axis=0) * WEAK < noise).tolist():

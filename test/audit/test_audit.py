@@ -10,6 +10,7 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.audit import audit
+from pierburg_ros.errors import InputError
 from pierburg_ros.library.reading import read
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel
@@ -133,3 +134,15 @@ def test_a_mend_is_the_final_line_with_what_is_written_already():
     assert source.mended(-1.0, 0.0).line("position") == 'position: {column: "a b", unit: deg, scale: 0.5, offset: -0.1}'
     plain = read_signal_map({"speed": {"topic": "/wheel", "exact": True}}).sources["speed"]
     assert plain.mended(0.1047, 0.0, "rpm").line("speed") == "speed: {topic: /wheel, unit: rpm, exact: true}"
+
+
+def test_exact_signals_are_named_in_the_map_or_by_an_option(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time,applied_duty,position\n" + "".join(f"{k / 100},{k % 2},{k / 50}\n" for k in range(100)))
+    assert read(path).exact == frozenset()
+    assert read(path, exact=["applied_duty"]).exact == {"duty"}
+    assert read(path, signals={"applied_duty": {"column": "applied_duty", "exact": True}}).exact == {"duty"}
+    with pytest.raises(InputError, match="--exact found 'dutty'"):
+        read(path, exact=["dutty"])
+    with pytest.raises(InputError, match="exact 'yes', expected true or false"):
+        read(path, signals={"applied_duty": {"column": "applied_duty", "exact": "yes"}})

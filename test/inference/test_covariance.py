@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pierburg_ros.inference.covariance import correlation_length, covariance_of
+from pierburg_ros.inference.covariance import at_least_effective, correlation_length, covariance_of
 
 
 def autoregressive(size, memory, seed):
@@ -64,3 +64,24 @@ def test_few_blocks_leave_more_doubt():
     few = covariance_of(-np.ones((300, 1)), tuple(np.full(50, level) for level in lines - lines.mean()))
     assert few.factor == pytest.approx(2.571, abs=0.001)
     assert covariance_of(-np.ones((300, 1)), (np.random.default_rng(8).standard_normal(300),)).factor < 1.97
+
+
+def test_sums_over_a_single_block_do_not_make_a_value_exact():
+    """One transient in a recording: at the minimum its sum with each slope is zero, whatever it did to the value."""
+    time = np.linspace(0.0, 6.0, 3000)
+    transient = 40.0 * np.exp(-time / 0.9)
+    slopes = np.stack([np.ones(time.size), np.sin(3.0 * time)], axis=1)
+    left = transient - slopes @ np.linalg.lstsq(slopes, transient, rcond=None)[0]
+    few, kept = covariance_of(slopes, (left,)), at_least_effective(slopes, (left,))
+    assert few.blocks <= 3
+    assert np.diagonal(few.matrix).max() < 1e-9
+    # the transient moves the values by some units, which no noise could do
+    assert np.sqrt(np.diagonal(kept.matrix)).min() > 0.3
+
+
+def test_where_blocks_vary_more_the_sandwich_stays():
+    random = np.random.default_rng(9)
+    slow = autoregressive(50_000, 0.9, 9)
+    slopes = np.stack([autoregressive(50_000, 0.9, 10), random.standard_normal(50_000)], axis=1)
+    found, classical = covariance_of(slopes, (slow,)), at_least_effective(slopes, (slow,))
+    assert found.matrix[0, 0] <= classical.matrix[0, 0] * 1.0001

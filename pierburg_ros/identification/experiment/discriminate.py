@@ -35,7 +35,7 @@ FINALISTS = 2
 COARSER = 5
 """Number of sample periods in one of the linear estimate's, which has many sequences to try. Work: simulations and
 memory shrink by it; the noise is scaled for it."""
-UNUSUAL_SLOPES = 10.0
+WIDE_STEPS = 10.0
 """Differences of the linear estimate's slopes, in usual ones. Chosen: they look across jumps of single samples, as when
 a shaft breaks loose; not varied."""
 DETECTABLE = 6.0
@@ -134,7 +134,7 @@ def linear_separation(first: Model, second: Model, time: Signal, duty: Signal, n
 
     point = coordinates.point(second.values)
     difference = residual(point)
-    slopes = jacobian(residual, point, difference, *coordinates.bounds, UNUSUAL_SLOPES * coordinates.steps)
+    slopes = jacobian(residual, point, difference, *coordinates.bounds, WIDE_STEPS * coordinates.steps)
     lengths = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     absorbed = np.linalg.lstsq(slopes / lengths, difference, rcond=1e-6)[0]
     return float(np.linalg.norm(difference - slopes / lengths @ absorbed))
