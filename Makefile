@@ -92,7 +92,6 @@ alone: $(STAMP)
 benchmarks: $(STAMP)
 	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fuzzy.py
-	$(BIN)/python benchmarks/least_squares.py
 	$(BIN)/python benchmarks/pacing.py
 	$(BIN)/python benchmarks/graph.py
 

@@ -396,10 +396,11 @@ HEAD = """\
 A wrong unit, sign, clock or signal is found before anything is searched for. The page is written by
 `python benchmarks/input_faults.py --shared FOLDER --trials FOLDER`.
 
-There is one test. Along the measured motion the motor's torque must equal load, friction and inertia. Numbers are free within a
-factor of 10 and every known effect may act, but no friction drives and no shaft is beyond its stops. A recording of which that leaves at most 5 % of the command's variation
-is what it is read as. Otherwise each fault of a table is undone in turn. One is told where less than 5 % and a fifth is left then. Where nothing mends the recording, physics is missing: nothing
-is said, and the diagnosis goes on.
+There is one test. Along the measured motion the motor's torque must equal load, friction and inertia. Numbers are
+free within a factor of 10 and every known effect may act, but no friction drives and no shaft is beyond its stops. A
+recording of which that leaves at most 5 % of the command's variation is what it is read as. Otherwise each fault of a
+table is undone in turn. One is told where less than 5 % and a fifth is left then. Where nothing mends the recording,
+physics is missing: nothing is said, and the diagnosis goes on.
 
 Where a fault is told, `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the final line of
 the signal map, what is written there already included. `--force` goes on. With `exact: true` in the signal map, or

@@ -40,14 +40,16 @@ print(json.dumps([model.active_effects, model.as_mapping()["effects"], declared[
 """
 LOOKED_FOR = """
 import json
+from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
-from pierburg_ros.diagnosis.search.candidates import starts_of
-from pierburg_ros.diagnosis.search.linear import promised
-from pierburg_ros.estimation.data import data_of
-from pierburg_ros.estimation.estimator import Estimator
+from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.data import data_of
 from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fitter, ladder
+from pierburg_ros.inference.motion import motion_of
+from pierburg_ros.inference.shortlist import Span, forms, promises
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.recording.recording import Channel, Recording
 random = np.random.default_rng(1)
@@ -57,12 +59,14 @@ inputs = Inputs(np.arange(60) * 0.2, np.concatenate([[0.0], random.uniform(-0.1,
 time = np.arange(6000) / 500.0
 measured = simulate_measurement(nominal.with_values({"output_filter.time_constant": 0.02}), inputs, time, 0.003)
 channel = Channel(inputs.time, inputs.command)
-estimator = Estimator(data_of([Recording("run", "hall_voltage", time, measured, channel)], nominal), nominal)
-starts = starts_of(estimator.data, nominal)
-(variant,) = [each for each in starts if each.effect == "output_filter"]
-base = estimator.fit(Explanation())
-_, start = promised(estimator, base, variant, starts[variant])[0]
-found = estimator.fit(Explanation((), (variant,)), start)
+data = data_of([Recording("run", "hall_voltage", time, measured, channel)], nominal)
+fitter = Fitter(data, nominal, ladder(data)[0])
+balance = Balance(actuator, tuple(motion_of(run, nominal, fitter.constant) for run in data.runs))
+candidates = [each for each in forms(data, nominal, Span(100.0, 0.0, 1.0)) if each[0].effect == "output_filter"]
+base = fitter.fit(Explanation(), nominal.values, 0)
+with ThreadPoolExecutor(1) as pool:
+    best = promises(base, balance, candidates, pool)[0]
+found = fitter.fit(Explanation((), (best.variant,)), best.values)
 print(json.dumps([found.values["output_filter.time_constant"], base.ratio, found.ratio]))
 """
 

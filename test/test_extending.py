@@ -13,8 +13,8 @@ LIES_ON_STOPS = """
 import json
 import numpy as np
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.diagnosis.diagnose import evidence
-from pierburg_ros.diagnosis.evidence.at_stops import share_at_stops
+from pierburg_ros.diagnosis.at_stops import share_at_stops
+from pierburg_ros.inference.data import data_of
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Channel, Recording
 nominal = Model.nominal(read_actuator("pierburg"))
@@ -23,7 +23,7 @@ angle = np.interp(time, [0.0, 4.0, 5.0, 7.0, 8.0, 10.0], np.array([0.0, 0.0, 1.0
 noise = 0.003 * np.random.default_rng(1).standard_normal(time.size)
 duty = Channel(np.array([0.0, 4.0, 7.0]), np.array([0.0, 0.3, 0.15]))
 recording = Recording("drawn", "hall_voltage", time, 0.42 + 4.1 * angle / (np.pi / 2) + noise, duty)
-print(json.dumps(share_at_stops(evidence([recording], nominal))))
+print(json.dumps(share_at_stops(data_of([recording], nominal))))
 """
 DIAGNOSED = """
 import json
@@ -57,13 +57,13 @@ def with_step(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("step")
     diagnosis = copied(root) / "diagnosis"
     (file, field), (call,) = blocks("diagnosis.md"), blocks("diagnosis.md", "text")
-    (diagnosis / "evidence/at_stops.py").write_text(file)
+    (diagnosis / "at_stops.py").write_text(file)
     regimes = '    regimes: list[Regime] = []\n    """Of the first recording."""\n'
     insert(diagnosis / "schema.py", regimes, field)
     findings = diagnosis / "report/findings.py"
     insert(findings, "        regimes=ranges,\n", call)
-    quality = "from pierburg_ros.diagnosis.evidence import quality\n"
-    insert(findings, quality, "from pierburg_ros.diagnosis.evidence.at_stops import share_at_stops\n")
+    others = "from pierburg_ros.diagnosis import quality, remains\n"
+    insert(findings, others, "from pierburg_ros.diagnosis.at_stops import share_at_stops\n")
     return root
 
 

@@ -10,6 +10,7 @@ ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "pierburg_ros"
 ALLOWED = {
     "errors": set(),
+    "budget": {"errors"},
     "arrays": set(),
     "kernel_cache": set(),
     "kernel": {"kernel_cache"},
@@ -29,29 +30,25 @@ ALLOWED = {
 }
 ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
-ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control", "recording"}
-ALLOWED["inference"] = ALLOWED["plant"] | {"plant", "recording"}
-ALLOWED["estimation"] = ALLOWED["inference"] | {"inference"}
+ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control"}
+ALLOWED["inference"] = ALLOWED["plant"] | {"plant", "recording", "budget", "deadline"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["inference"] | {"inference", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}
-ALLOWED["audit"] = ALLOWED["plant"] | {"plant", "recording", "inference"}
-ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "estimation", "workers", "deadline", "pages"}
-ALLOWED["proof"] = (
-    ALLOWED["diagnosis"]
-    | {"diagnosis", "comparison", "control", "closed_loop", "processes"}
-    | {
-        "executors",
-        "version",
-    }
-)
+ALLOWED["audit"] = ALLOWED["inference"] | {"inference"}
+ALLOWED["diagnosis"] = ALLOWED["audit"] | {"audit", "pages"}
+ALLOWED["proof"] = ALLOWED["diagnosis"] | {
+    "diagnosis",
+    "comparison",
+    "control",
+    "closed_loop",
+    "processes",
+    "executors",
+    "version",
+}
 ALLOWED["nodes"] = ALLOWED["proof"] | {"proof", "identification", "monitoring", "serial_line"}
 ALLOWED["viewers"] = {"errors", "arrays", "recording"}
-ALLOWED["library"] = ALLOWED["proof"] - {"proof", "processes", "executors", "version"} | {
-    "identification",
-    "export",
-    "viewers",
-}
+ALLOWED["library"] = ALLOWED["proof"] - {"processes", "executors", "version"} | {"identification", "export", "viewers"}
 ALLOWED["fleets"] = ALLOWED["library"] | {"library", "executors", "version"}
 ALLOWED["starting"] = set()
 ALLOWED["cli"] = ALLOWED["nodes"] | {"nodes", "library", "fleets", "workers", "executors", "viewers", "starting"}
@@ -60,18 +57,29 @@ ALLOWED["__init__"] = {"errors", "fleets", "library", "recording"}
 FORMULATION = {"errors", "kernel"}
 ROOMS = {
     "cli": {"console": set(), "options": {"console"}},
+    "audit": {"fault": set(), "held": set(), "rows": {"fault", "held"}},
     "diagnosis": {
         "schema": set(),
         "cleaning": set(),
-        "evidence": {"schema"},
-        "search": {"evidence"},
-        "location": {"schema", "evidence"},
-        "remainder": {"evidence", "search"},
-        "disturbance": {"search", "remainder"},
-        "limits": {"search"},
-        "verdict": {"schema", "search", "remainder"},
+        "motion": set(),
+        "quality": {"motion", "schema"},
+        "location": {"motion", "schema"},
+        "limits": set(),
+        "remains": {"schema"},
+        "found": {"limits", "remains"},
         "result": {"schema"},
-        "report": {"schema", "evidence", "search", "location", "remainder", "limits", "verdict", "result"},
+        "simulation": {"schema", "result"},
+        "report": {
+            "cleaning",
+            "found",
+            "limits",
+            "location",
+            "motion",
+            "quality",
+            "remains",
+            "result",
+            "schema",
+        },
     },
     "fleets": {"recordings": set(), "ageing": {"run"}},
     "identification": {
@@ -83,6 +91,21 @@ ROOMS = {
         "identify": {"fit", "identifiability", "paper", "reach", "turn"},
         "experiment": {"fit", "identify", "paper"},
         "description": {"fit", "identifiability", "identify"},
+    },
+    "inference": {
+        "evidence": set(),
+        "explanation": set(),
+        "least_squares": set(),
+        "data": {"evidence"},
+        "motion": {"data"},
+        "balance": {"motion"},
+        "coordinates": {"explanation"},
+        "fit": {"coordinates", "data", "evidence", "explanation", "least_squares"},
+        "replay": {"data", "fit"},
+        "shortlist": {"balance", "coordinates", "data", "explanation", "fit", "least_squares"},
+        "changes": {"balance", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
+        "search": {"balance", "changes", "explanation", "fit", "least_squares", "shortlist"},
+        "choice": {"evidence", "explanation", "fit", "search", "shortlist"},
     },
     "nodes": {
         "core": set(),

@@ -9,22 +9,11 @@ from support.documentation import ROOT
 from support.named_numbers import NamedNumber, numbers_of
 
 DOCS = ROOT / "docs"
-GOING = ("estimation/", "audit/")
-GOING += tuple(
-    f"diagnosis/{room}/" for room in ("search", "remainder", "disturbance", "evidence", "limits", "location", "verdict")
-)
-"""What the new inference takes the place of."""
-REWRITTEN = ("inference/", "diagnosis/", "identification/")
-"""Rooms at work on that inference; names that only they share are renamed there."""
 ABANDONED = re.compile(
     r"\b(told|heard|vouch\w*|witness\w*|stood|wander\w*|remainders?)\b|\b(an?|the|its|no|each|every|this) tells?\b",
     flags=re.IGNORECASE,
 )
 """Words of this project alone, and "tell" as a noun; docs/glossary.md has those of the field."""
-PENDING = {
-    "docs/input_faults.md": "written by benchmarks/input_faults.py, which is rewritten with the new inference",
-    "docs/reference/diagnosis_json.md": "written from diagnosis/schema.py, which is rewritten with the new inference",
-}
 PAGES = ["README.md", *sorted(str(path.relative_to(ROOT)) for path in DOCS.rglob("*.md"))]
 
 
@@ -32,8 +21,7 @@ def collisions() -> dict[str, list[NamedNumber]]:
     """Named numbers whose name has another value, or another meaning, elsewhere in the package."""
     named = defaultdict(list)
     for found in numbers_of():
-        if not found.file.startswith(GOING):
-            named[found.name].append(found)
+        named[found.name].append(found)
     return {name: each for name, each in named.items() if ambiguous(each)}
 
 
@@ -47,18 +35,8 @@ def listed(collided: dict[str, list[NamedNumber]]) -> str:
     return "\n".join(f"{name}: {', '.join(each.file for each in found)}" for name, found in sorted(collided.items()))
 
 
-def shared_by_others(found: list[NamedNumber]) -> bool:
-    """Whether a room that is not at work on the new inference has the name."""
-    return any(not each.file.startswith(REWRITTEN) for each in found)
-
-
 def test_a_constant_has_one_meaning():
-    assert not listed({name: found for name, found in collisions().items() if shared_by_others(found)})
-
-
-@pytest.mark.xfail(reason="these names are at work in the rooms of the new inference")
-def test_a_constant_has_one_meaning_in_the_inference_too():
-    assert not listed({name: found for name, found in collisions().items() if not shared_by_others(found)})
+    assert not listed(collisions())
 
 
 def test_two_meanings_of_a_name_are_seen():
@@ -67,10 +45,7 @@ def test_two_meanings_of_a_name_are_seen():
     assert not ambiguous([NamedNumber("A", "1", f"{says}.py", says, "", "") for says in ("Time.", "")])
 
 
-@pytest.mark.parametrize(
-    "page",
-    [pytest.param(page, marks=pytest.mark.xfail(reason=PENDING[page])) if page in PENDING else page for page in PAGES],
-)
+@pytest.mark.parametrize("page", PAGES)
 def test_a_page_uses_the_words_of_the_field(page):
     lines = (ROOT / page).read_text(encoding="utf-8").splitlines()
     assert not [f"{page}:{k}: {line}" for k, line in enumerate(lines, 1) if ABANDONED.search(line)]

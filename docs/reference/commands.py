@@ -38,4 +38,6 @@ def _row(parameter: Any) -> tuple[str, str, str]:
 
 def _default(parameter: Any) -> str:
     value = parameter.default
-    return f"default {value}" if isinstance(value, (int, float, str)) and not isinstance(value, bool) else ""
+    if isinstance(value, bool) or value == "" or not isinstance(value, (int, float, str)):
+        return ""
+    return f"default {value}"

@@ -13,8 +13,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pierburg_ros.audit.fault import Fault
-from pierburg_ros.audit.held import OFF, Held, Weighed
+from pierburg_ros.audit.held import DESCRIBED_WITHIN, Held, Weighed
 from pierburg_ros.audit.rows import Row, facts, rows
+from pierburg_ros.inference.data import refuse_others
 from pierburg_ros.inference.evidence import SIGNIFICANT, TIED
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -29,7 +30,12 @@ BETTER = 0.2
 
 
 def audit(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
-    """Every signal of `recordings` that is not what it is read as, for an actuator like `nominal`; none if all are."""
+    """Every signal of `recordings` that is not what it is read as, for an actuator like `nominal`; none if all are.
+
+    InputError where they are recordings of another kind of actuator.
+    """
+    for recording in recordings:
+        refuse_others(recording, nominal.actuator)
     return [fault for recording in recordings for fault in faults(Held(recording, nominal))]
 
 
@@ -65,9 +71,9 @@ def the_fault(recording: Recording, read: Weighed, mending: Sequence[tuple[Row, 
     same = [pair for pair in alike if pair[0].mend == alike[0][0].mend]
     row, undone = min(same, key=lambda pair: pair[1].described)
     words = (
-        f"The actuator, its numbers free within a factor of {OFF:g}, and every effect that it may have leave"
-        f" {100.0 * read.left:.3g} % of the {recording.input}'s variation as it is read, {100.0 * undone.left:.2g} %"
-        f" once that is mended, in {undone.effective:.0f} independent samples."
+        f"The actuator, its numbers free within a factor of {DESCRIBED_WITHIN:g}, and every effect that it may have"
+        f" leave {100.0 * read.left:.3g} % of the {recording.input}'s variation as it is read,"
+        f" {100.0 * undone.left:.2g} % once that is mended, in {undone.effective:.0f} independent samples."
     )
     others = [f"{other.mend} ({other.signal} {other.what})" for other, _ in alike if other.signal != row.signal]
     words += f" As well does {others[0]}." if others else ""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import DECLARED, EFFECTS, Effect
+from pierburg_ros.effects import DECLARED, EFFECTS, OUTSIDE, Effect
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.bounded import Bounded, Column
@@ -27,12 +27,12 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 
-OFF = 10.0
+DESCRIBED_WITHIN = 10.0
 """Factor within which a number of a description may be off. Chosen: guesses are; units are off by 57 and more."""
-BEYOND = 0.06
+PAST_STOP = 0.06
 """Share of the travel by which a reading may lie beyond a stop. Chosen: a sensor's zero may be off by 3 %, its curve
 and a soft stop add as much."""
-FEW = 4
+STARTS_AS_COLUMNS = 4
 """Starts of each way in which an effect may act that make columns. Work: what lies between is nearly made of them."""
 MOST = 3000
 """Samples of a motion that are weighed, evenly spread, and most in the actuator's own time. Work: a fault shows
@@ -102,7 +102,7 @@ def seen(recording: Recording, nominal: Model) -> Motion | None:
     except InputError:
         return None
     own, step = nominal.scales.time, float(np.median(np.diff(recording.time)))
-    if recording.duration < own or recording.time.size < SAMPLES or not step / OFF <= own <= MOST * step:
+    if recording.duration < own or recording.time.size < SAMPLES or not step / DESCRIBED_WITHIN <= own <= MOST * step:
         return None
     motion = motion_of(run, nominal, own)
     size = motion.samples.size
@@ -115,7 +115,7 @@ def impossible(recording: Recording, nominal: Model) -> float:
     share, travel = 0.0, actuator.upper_stop - actuator.lower_stop
     if math.isfinite(travel) and recording.quantity != "speed":
         angle = decoded(nominal, recording.measured, recording.quantity)
-        low, high = actuator.lower_stop - BEYOND * travel, actuator.upper_stop + BEYOND * travel
+        low, high = actuator.lower_stop - PAST_STOP * travel, actuator.upper_stop + PAST_STOP * travel
         share = float(np.mean((angle < low) | (angle > high)))
     if supply is not None and actuator.drive == "voltage":
         share = max(share, float(np.mean(supply.values > actuator.parameters["supply_voltage"].maximum)))
@@ -130,11 +130,11 @@ def base(motion: Motion, nominal: Model) -> Iterator[Column]:
         if name == "coulomb_friction":
             yield motion.load({**none, name: 1.0}), 0.0, math.inf
         elif value != 0.0:
-            yield motion.load({**none, name: value}), 1.0 / OFF, OFF
+            yield motion.load({**none, name: value}), 1.0 / DESCRIBED_WITHIN, DESCRIBED_WITHIN
     braked = motion.driven(values, motion.command) - motion.motor_torque(values)
     if np.any(braked):
-        yield braked, 1.0 / OFF, math.inf
-    low, high = DECLARED["external_load.torque"].expected(nominal.scales)
+        yield braked, 1.0 / DESCRIBED_WITHIN, math.inf
+    low, high = DECLARED[OUTSIDE].expected(nominal.scales)
     yield np.ones(motion.samples.size), low, high
 
 
@@ -159,7 +159,7 @@ def possible(motion: Motion, nominal: Model) -> Iterator[Column]:
 
 def few(effect: Effect, starts: Sequence[Start]) -> Sequence[Start]:
     """Some of the starts, phases in turn; the strongest alone where the effect takes a share of the command itself."""
-    return starts[-1:] if effect.stage in ("input", "drive") else starts[:: len(starts) // FEW | 1]
+    return starts[-1:] if effect.stage in ("input", "drive") else starts[:: len(starts) // STARTS_AS_COLUMNS | 1]
 
 
 def allowed(effect: Effect, start: Start, motion: Motion, column: Signal) -> Iterator[Column]:

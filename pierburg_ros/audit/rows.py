@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.audit.fault import Fault
-from pierburg_ros.audit.held import BEYOND, Held, Weighed
+from pierburg_ros.audit.held import PAST_STOP, Held, Weighed
 from pierburg_ros.inference.data import inputs_of
 from pierburg_ros.plant import Model, simulate
 from pierburg_ros.recording import Channel, Recording
 
-LATEST = 20.0
+LATE_COMMAND = 20.0
 """Time by which a command may be stamped late, at once or by the end, in the actuator's own. Chosen: 2 s for the valve;
 not varied."""
 CHANNELS = ("command", "supply_voltage", "enabled", "setpoints")
@@ -118,7 +118,7 @@ def of_time(held: Held) -> Iterator[Row]:
     if held.motion is None:
         return
     own = held.nominal.scales.time
-    step, most = max(held.motion.step, own / 4.0), LATEST * own
+    step, most = max(held.motion.step, own / 4.0), LATE_COMMAND * own
     sender = f"choose the clock of the sender with --time stamp or --time publish, or record the applied {name}"
     for late in map(float, np.arange(step, most, step)):
         yield Row(name, f"stamped {1e3 * late:.3g} ms late", sender, partial(held.weighed, late), True)
@@ -183,7 +183,7 @@ def facts(held: Held) -> Iterator[Fault]:
     name, values = recording.input, recording.command.values
     still, unsteered = np.ptp(recording.measured) == 0.0, np.ptp(values) == 0.0
     applied, sensed = (f"name the signal: `{each}: {{topic: ...}}`" for each in (name, recording.quantity))
-    if still and np.ptp(simulate(nominal, inputs_of(recording), recording.time)) > BEYOND * nominal.scales.reading:
+    if still and np.ptp(simulate(nominal, inputs_of(recording), recording.time)) > PAST_STOP * nominal.scales.reading:
         shown = f"It reads {recording.measured[0]:.4g} throughout, while the {name} would move the actuator."
         yield Fault(recording.name, recording.quantity, "constant", shown, sensed)
     swings = nominal.actuator.load == "pendulum" or recording.enabled is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 from collections.abc import Sequence
 from pathlib import Path
@@ -71,14 +72,21 @@ def prove(
     with progress() as show:
         show(Step("the models of other recordings"))
         reporter = Reporter(show)
-        efforts = Budget.of(budget or USUAL_BUDGET).efforts
-        results = run.prove(output, plan, efforts, workers=jobs, scheduler=scheduler, report=reporter)
+        results = run.prove(output, plan, efforts(budget), workers=jobs, scheduler=scheduler, report=reporter)
     if not results:
         raise InputError(f"No trial has ended in {output}. Run the same command again to go on.")
     done = Run(results, plan)
     document.write(done, output, docs)
     terminal().print(summary(done), f"Results in {output}: proof-real.md, results.jsonl")
     return results
+
+
+def efforts(budget: str) -> float:
+    """Usual efforts for each diagnosis; InputError for seconds, by which its results would depend on the machine."""
+    given = Budget.of(budget or USUAL_BUDGET)
+    if math.isfinite(given.seconds):
+        raise InputError(f"--budget is {budget}; expected usual efforts such as 2 or 0.5 for a run that is measured.")
+    return given.efforts
 
 
 class Reporter:

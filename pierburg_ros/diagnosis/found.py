@@ -155,13 +155,17 @@ def with_all_drifts(inferred: Inferred) -> Fit:
 def shares(choice: Choice) -> Shares:
     """How the mismatch divides between re-estimated parameters, each effect beside the others, and what remains.
 
-    What effects take together is divided in proportion to what is lost without each of them.
+    What effects take together is divided in proportion to what is lost without each of them. A parameter that changed
+    in mid-recording is a re-estimated one.
     """
     start, estimated, left = (excess(fit) for fit in (choice.described, choice.estimated, choice.handed))
     if start <= MISMATCH:
         return Shares(None, {}, None)
+    # a fit of all parameters may end in a minimum above the description
+    estimated = min(estimated, start)
     lost = {effect: max(excess(name.rival) - excess(name.fit), 0.0) for effect, name in choice.names.items()}
-    together, whole = max(estimated - left, 0.0) / start, sum(lost.values())
+    whole = sum(lost.values())
+    together = max(estimated - left, 0.0) / start if whole > 0.0 else 0.0
     effects = {}
     for effect, each in lost.items():
         alone = [fit for fit in choice.fits if fit.explanation.effects == (effect,)]

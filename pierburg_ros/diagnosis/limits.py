@@ -25,13 +25,13 @@ from pierburg_ros.inference.shortlist import added
 ONE_SIDED = 2.71
 """Fall of -2 log likelihood at a strength that is excluded at 95 %, one-sided. Derived: the square of 1.645, the 95 %
 quantile of the normal distribution."""
-STARTS = 3
-"""Starts of one way to act that are examined: places, frequencies, phases. Work: each costs up to `STEPS` simulations;
-the weakest of their limits counts."""
-STEPS = 4
+EXAMINED = 3
+"""Starts of one way to act that are examined: places, frequencies, phases. Work: each costs up to `STRENGTHS_TRIED`
+simulations; the weakest of their limits counts."""
+STRENGTHS_TRIED = 4
 """Strengths that are simulated for one start. Derived: the cost rises about with the square of the strength, so each
 simulation gives the next one."""
-CLOSE = 0.1
+SETTLED = 0.1
 """Relative change of a strength below which it is found. Chosen: a limit is told with two digits."""
 WIDENED = 1.5
 """Factor by which a strength is raised while a fit of the parameters makes it possible. Chosen: a limit is then too
@@ -101,7 +101,7 @@ def seen(fit: Fit, candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
         strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
         if variant.effect not in fit.explanation.effects and len(strengths) == 1:
             able = [start for start in starts if start[strengths[0]] != 0.0]
-            some = able[:: max(math.ceil(len(able) / STARTS), 1)]
+            some = able[:: max(math.ceil(len(able) / EXAMINED), 1)]
             cases.setdefault(variant.effect, []).extend(Case(variant, start, strengths[0]) for start in some)
     found = pool.map(lambda several: _of_effect(fit, several), cases.values())
     return {effect: each for effect, each in zip(cases, found, strict=True) if each is not None}
@@ -127,7 +127,7 @@ def _of_case(fit: Fit, case: Case) -> Seen | None:
     left = fit.fitted - fit.basis @ (fit.basis.T @ fit.fitted)
     allowed = ONE_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
     factor, mark = 1.0, 0.0
-    for step in range(STEPS):
+    for step in range(STRENGTHS_TRIED):
         change = _change(fit, case, factor)
         if change is None:
             return None
@@ -140,7 +140,7 @@ def _of_case(fit: Fit, case: Case) -> Seen | None:
         following = max(best + math.sqrt(allowed / size), least)
         if following > largest:
             return Seen(None, mark)
-        found = abs(math.log(following / factor)) < CLOSE
+        found = abs(math.log(following / factor)) < SETTLED
         factor = following
         if found:
             break

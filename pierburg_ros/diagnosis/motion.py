@@ -17,10 +17,10 @@ INSTANT = 0.21
 """Shortest time over which a motion is evaluated, in the actuator's own time: half the window of a velocity, and the
 grid of missing torque, of energy and of contact. Derived: 20 ms for the valve, ten samples at 500 Hz; with 3 mV of
 noise a velocity is then known to 0.025 rad/s."""
-SLOWEST = 0.003
+STANDSTILL = 0.003
 """Share of the no-load speed below which the shaft counts as standing still; more where the noise requires it. Derived:
 twice the error that 3 mV of noise cause in a velocity of the valve."""
-NEAR = 0.01
+AT_STOP = 0.01
 """Distance from a stop within which the shaft counts as on it, as a share of the travel; three times the noise is
 added. Chosen: a hundredth; not varied."""
 AFTERMATH = 3.1
@@ -75,8 +75,10 @@ class Motion:
 
     @property
     def time_at_rest(self) -> Signal:
-        """How long [s] the shaft has stood still, or had stood still before a movement that began a moment ago; else
-        0."""
+        """How long [s] the shaft has stood still; 0 where it moves.
+
+        A movement that began a moment ago still has the time before it.
+        """
         began = np.zeros(self.time.size)
         arrivals = np.flatnonzero(~self.moving[1:] & self.moving[:-1]) + 1
         began[arrivals] = self.time[arrivals]
@@ -113,11 +115,11 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     half = max(INSTANT * scales.time, 2.0 * interval)
     spread = noise * abs(per_unit)
     # each end of the difference is a mean over the half window
-    slowest = max(SLOWEST * scales.angle / scales.time, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
+    slowest = max(STANDSTILL * scales.angle / scales.time, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
     velocity = slope(run.time, angle, half)
     if run.quantity == "speed":
         velocity, spread = decoded(nominal, run.measured, run.quantity), 0.0
-    near = NEAR * scales.angle + 3.0 * spread
+    near = AT_STOP * scales.angle + 3.0 * spread
     place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
     command = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])
     return Motion(

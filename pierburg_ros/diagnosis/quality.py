@@ -29,7 +29,7 @@ Kind = Literal[
     "little_travel",
 ]
 
-SHORT = 105.0
+SHORT_RECORDING = 105.0
 """Duration below which rare events and slow changes are not detected, in the actuator's own time. Chosen: 10 s for the
 valve; it adds advice and decides no verdict."""
 SLOW_SAMPLING = 9.5
@@ -65,8 +65,7 @@ RECORD: dict[Kind, str] = {
 
 @dataclass(frozen=True)
 class Limit:
-    """A property of the recordings that leaves questions open; `finding` says which property and which questions, in
-    words."""
+    """A property of the recordings that leaves questions open; `finding` says in words which of both."""
 
     kind: Kind
     finding: str
@@ -155,7 +154,7 @@ def _limits_of_sampling(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
     duration = sum(float(run.time[-1] - run.time[0]) for run in runs)
     intervals = np.concatenate([np.diff(run.time) for run in runs])
     median = float(np.median(intervals))
-    if duration < SHORT * scales.time:
+    if duration < SHORT_RECORDING * scales.time:
         limits.append(
             Limit(
                 "short",

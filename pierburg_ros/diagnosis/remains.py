@@ -17,16 +17,16 @@ from pierburg_ros.inference.shortlist import DEPENDENT, balanced, projected
 from pierburg_ros.pages.numbers import percent
 from pierburg_ros.plant import Model
 
-MOST = 3
+MOST_SHAPES = 3
 """Shapes that are told. Chosen: more do not help a reader."""
-WORTH = 0.05
+WORTH_TELLING = 0.05
 """Share of the missing torque, mean square, from which a shape is told. Chosen: a twentieth; not varied."""
 ONE_WAY = 0.8
 """Share of what a shape takes in one direction of the shaft from which it counts as that direction's. Chosen: four
 times as much as in the other."""
-NODES = 5
+MAP_NODES = 5
 """Nodes of the map over angle and over velocity. Chosen: a parabola and what bends once more; not varied."""
-FEWEST = 30
+SAMPLES_OF_NODE = 30
 """Samples of the balance that a node of the map needs. Derived: their mean is known to a fifth of their spread."""
 STRETCHES = 60
 """Stretches of a recording in which the missing torque is averaged over time. Chosen: ten pixels each on a page."""
@@ -104,8 +104,8 @@ def shapes(at: Lacking) -> list[RemainingShape]:
     whole = float(left @ left)
     if left.size == 0 or whole <= 0.0:
         return []
-    for _ in range(MOST):
-        best, share, pair = None, WORTH, next(iter(FORMS))
+    for _ in range(MOST_SHAPES):
+        best, share, pair = None, WORTH_TELLING, next(iter(FORMS))
         for form, columns in FORMS.items():
             basis = _beside(columns(at), taken)
             if basis.size and (part := float(np.sum(np.square(basis.T @ left))) / whole) > share:
@@ -171,7 +171,7 @@ def in_words(found: Sequence[RemainingShape], at: Lacking) -> str:
 
 def torque_map(at: Lacking) -> dict[str, Signal] | None:
     """The missing torque over angle and velocity, between nodes; None where too little moves."""
-    if at.torque.size < FEWEST * NODES:
+    if at.torque.size < SAMPLES_OF_NODE * MAP_NODES:
         return None
     still = float(np.ptp(at.angle)) < 1e-9
     angle = np.zeros(1) if still else _nodes(at.angle)
@@ -181,7 +181,7 @@ def torque_map(at: Lacking) -> dict[str, Signal] | None:
     weights = _hats(at.angle, angle)[:, :, np.newaxis] * _hats(at.velocity, velocity)[:, np.newaxis, :]
     columns = weights.reshape(at.own.size, -1)
     # nodes that few samples reach stay at the mean of their neighbours: each pair of neighbours counts as a sample
-    ties = _neighbours(angle.size, velocity.size) * math.sqrt(FEWEST)
+    ties = _neighbours(angle.size, velocity.size) * math.sqrt(SAMPLES_OF_NODE)
     system = np.concatenate([columns, ties])
     wanted = np.concatenate([at.own, np.zeros(ties.shape[0])])
     torque = np.linalg.lstsq(system, wanted, rcond=None)[0].reshape(angle.size, velocity.size)
@@ -191,7 +191,7 @@ def torque_map(at: Lacking) -> dict[str, Signal] | None:
 def _nodes(values: Signal) -> Signal:
     """Nodes over nearly all of some values, evenly spaced."""
     low, high = (float(end) for end in np.quantile(values, [0.02, 0.98]))
-    return np.linspace(low, high, NODES)
+    return np.linspace(low, high, MAP_NODES)
 
 
 def _hats(values: Signal, nodes: Signal) -> Signal:

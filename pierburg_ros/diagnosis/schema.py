@@ -338,7 +338,7 @@ class Simulated(Part):
 
 
 class Simulation(Part):
-    """The user's own simulator, which stood for the nominal model."""
+    """The user's own simulator, in the place of the nominal model."""
 
     recordings: list[str]
     """Names of its recordings."""

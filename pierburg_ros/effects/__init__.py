@@ -68,5 +68,19 @@ ROUNDING: Effect = next(effect for effect in EFFECTS if effect.rounds is not Non
 """The effect of a converter."""
 STEP = f"{ROUNDING.id}.{ROUNDING.rounds}"
 """Dotted name of its step."""
+OUTSIDE = f"{external_load.EFFECT.id}.{external_load.EFFECT.strength[0]}"
+"""Dotted name of a load torque from outside."""
 
-__all__ = ["ADDED", "COPPER", "DECLARED", "EFFECT", "EFFECTS", "GEARED", "ROUNDING", "STEP", "Effect", "Parameter"]
+__all__ = [
+    "ADDED",
+    "COPPER",
+    "DECLARED",
+    "EFFECT",
+    "EFFECTS",
+    "GEARED",
+    "OUTSIDE",
+    "ROUNDING",
+    "STEP",
+    "Effect",
+    "Parameter",
+]

@@ -16,7 +16,7 @@ from pierburg_ros.inference.intervals import slopes_at
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.recording import Recording
 
-SURE = 1.96
+HALF_INTERVAL = 1.96
 """Standard deviations in half of a 95 % interval. Derived: of a normal distribution."""
 KNOWN = 0.1
 """A parameter counts as identifiable when its 95 % half-width is below this share of it. Given: a convention of the
@@ -95,10 +95,10 @@ class _Trace:
         others = [other for other in self.free if other != name]
         left, _ = self._left_over(own, others)
         alone = float(np.linalg.norm(own))
-        width = SURE * self.noise / left if left > NOTHING * alone else None
+        width = HALF_INTERVAL * self.noise / left if left > NOTHING * alone else None
         if width is not None and width < KNOWN:
             return Finding(True, width, {}, f"known to {_percent(width)} (95 %).")
-        if SURE * self.noise > KNOWN * alone:
+        if HALF_INTERVAL * self.noise > KNOWN * alone:
             return Finding(False, width, {}, self._no_trace(own))
         partners, changes = self._imitation(own, others)
         imitation = dict(zip(partners, changes, strict=True))
@@ -118,7 +118,7 @@ class _Trace:
         for size in range(1, min(MOST_PARTNERS, len(others)) + 1):
             tried = [(*self._left_over(own, group), group) for group in combinations(others, size)]
             left, changes, group = min(tried, key=lambda row: row[0])
-            if SURE * self.noise > KNOWN * left:
+            if HALF_INTERVAL * self.noise > KNOWN * left:
                 return group, changes
         return tuple(others), self._left_over(own, others)[1]
 

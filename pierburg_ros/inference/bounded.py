@@ -11,7 +11,7 @@ from pierburg_ros.arrays import Signal
 
 Column = tuple[Signal, float, float]
 """A column, shape (samples,), and the least and the most of it; the most may be infinite."""
-HELD = 1e3
+SLACK_WEIGHT = 1e3
 """How much a slack weighs beside a column of length 1. Derived: a bound then holds to a millionth."""
 
 
@@ -39,9 +39,9 @@ def bounded(triangle: Signal, target: Signal, low: Signal, high: Signal) -> Sign
     """
     size, ends = low.size, np.flatnonzero(np.isfinite(high))
     slack = np.zeros((ends.size, size + ends.size))
-    slack[np.arange(ends.size), ends] = slack[np.arange(ends.size), size + np.arange(ends.size)] = HELD
+    slack[np.arange(ends.size), ends] = slack[np.arange(ends.size), size + np.arange(ends.size)] = SLACK_WEIGHT
     known = np.vstack([np.hstack([triangle, np.zeros((triangle.shape[0], ends.size))]), slack])
-    wanted = np.concatenate([target - triangle @ low, HELD * (high - low)[ends]])
+    wanted = np.concatenate([target - triangle @ low, SLACK_WEIGHT * (high - low)[ends]])
     try:
         above, _ = nnls(known, wanted, maxiter=30 * known.shape[1])
     except RuntimeError:  # it turns in a circle

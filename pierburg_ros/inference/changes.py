@@ -15,7 +15,7 @@ from pierburg_ros.inference.shortlist import balanced
 
 MOMENTS = 60
 """Moments of a recording at which a change is tried. Work: a fit moves a moment on from there; not varied."""
-EARLIEST = 0.05
+FROM_ENDS = 0.05
 """Share of the recording before and after a change. Derived: a fit searches it within 3 to 97 % of the recording."""
 
 
@@ -50,7 +50,7 @@ def changes(fit: Fit, balance: Balance) -> list[Change]:
     time, end = inside.motions[0].time, balance.duration
     found = []
     for place, name in enumerate(names):
-        for moment in np.linspace(EARLIEST, 1.0 - EARLIEST, MOMENTS) * end:
+        for moment in np.linspace(FROM_ENDS, 1.0 - FROM_ENDS, MOMENTS) * end:
             column = np.where(time >= moment, slopes[:, place], 0.0)
             column = column - basis @ (basis.T @ column)
             size = float(column @ column)

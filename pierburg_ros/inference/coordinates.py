@@ -17,7 +17,7 @@ from pierburg_ros.plant import Model
 DRIFT = math.log(6.0)
 """A base parameter is searched within this factor (logarithm) of its nominal value, either way. Chosen: the paper's own
 change of R is a factor of 1.42, and no fit should reach a bound; not varied."""
-WIDTH = 20.0
+BROAD = 20.0
 """An effect's parameter is searched up to so many times its plausible value. Chosen: a bound that no fit should reach;
 not varied."""
 DECADE = 10.0
@@ -168,5 +168,5 @@ def _axis_of_effect(name: str, nominal: Model, duration: float) -> Axis:
             lower, upper = min(lower, math.log(own) - DRIFT), max(upper, math.log(own) + DRIFT)
         return Axis(scale, True, lower, upper, p.minimum, p.maximum, 0.001)
     large = max(abs(low), abs(high))
-    lower, upper = max(lowest / large, -WIDTH), max(min(highest / large, WIDTH), own * math.exp(DRIFT) / large)
+    lower, upper = max(lowest / large, -BROAD), max(min(highest / large, BROAD), own * math.exp(DRIFT) / large)
     return Axis(scale * large, False, lower, upper, p.minimum, p.maximum, 0.0002 if p.rhythm else 0.001)

@@ -35,7 +35,7 @@ RESTING = 5.0
 in 1 of 500 recordings."""
 STOP = 3.0
 """Noises within which a shaft starts on a stop. Derived: white noise stays within with 99.7 %."""
-FEWEST = 200
+FEWEST_SAMPLES = 200
 """Least number of samples of all recordings together. Chosen: ten for each quantity of a large explanation."""
 
 
@@ -235,9 +235,9 @@ def refuse_unusable(recordings: Sequence[Recording], actuator: Actuator) -> None
         raise InputError("There is no recording to fit; expected one or more. Name a file.")
     samples = sum(recording.time.size for recording in recordings)
     duration, shortest = sum(recording.duration for recording in recordings), 2 * CYCLE * actuator.scales.time
-    if samples < FEWEST or duration < shortest:
+    if samples < FEWEST_SAMPLES or duration < shortest:
         names = ", ".join(recording.name for recording in recordings)
         raise InputError(
-            f"{names} is too short ({samples} samples over {duration:#.3g} s); expected at least {FEWEST} samples over"
-            f" {shortest:.2g} s. Record longer: a minute with movements in both directions tells most."
+            f"{names} is too short ({samples} samples over {duration:#.3g} s); expected at least {FEWEST_SAMPLES}"
+            f" samples over {shortest:.2g} s. Record longer: a minute with movements in both directions tells most."
         )

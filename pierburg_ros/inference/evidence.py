@@ -25,10 +25,10 @@ correlated in time. Measured: right explanations leave 21 at most (n = 65), whit
 TIED = 12.0
 """Difference in the same measure below which two explanations tie. Chosen: above the 3.84 of one smooth quantity, since
 the best of many local minima is lower than the true one by luck."""
-CLOSE = 8
+SMEARED = 8
 """Neighbouring samples whose correlation is no evidence of an error: as many as a sensor's filter smears. Chosen: noise
 whose neighbours are correlated by 0.3 does then not look like an error that is correlated in time."""
-FEWEST = 8
+FEWEST_BLOCKS = 8
 """Least number of blocks whose sums show whether an error is correlated in time. Derived: their variance is known to
 a half."""
 
@@ -82,12 +82,12 @@ def structure(residual: Signal, allowed: float = 0.0) -> float:
     Casella and McCulloch, Variance Components, Wiley 1992, section 3.5). Block lengths double from one to the next, and
     the length with the most evidence counts. An error of the `allowed` size (root mean square) is no evidence.
     """
-    sums = residual[: residual.size // CLOSE * CLOSE].reshape(-1, CLOSE).sum(axis=1) / np.sqrt(CLOSE)
+    sums = residual[: residual.size // SMEARED * SMEARED].reshape(-1, SMEARED).sum(axis=1) / np.sqrt(SMEARED)
     length, most = 2, 0.0
-    while (count := sums.size // length) >= FEWEST:
+    while (count := sums.size // length) >= FEWEST_BLOCKS:
         blocks = sums[: count * length].reshape(count, length)
         means = blocks.mean(axis=1, keepdims=True)
-        within = float(np.sum(np.square(blocks - means))) / (count * (length - 1)) + CLOSE * length * allowed**2
+        within = float(np.sum(np.square(blocks - means))) / (count * (length - 1)) + SMEARED * length * allowed**2
         varies = length * float(np.mean(np.square(means))) / max(within, 1e-300)
         if varies > 1.0:
             most = max(most, count * (varies - 1.0 - float(np.log(varies))))

@@ -39,7 +39,7 @@ UNSIMULATED = 1e3
 WILD = 1e6
 """Largest error [noise] that is told. Derived: its square, summed over a day at 1 kHz, is 1e20; an unstable simulation
 reaches values whose squares are no numbers."""
-SAMPLES = 8.0
+SHORTEST_PULL = 8.0
 """Least time constant in sample periods. Derived: two samples for each of the four pulls in a time constant."""
 LADDER = (1.0, 3.0, 10.0)
 """Time constants of the pull in the actuator's own time, one after the other. Chosen: from where costs are smooth to
@@ -253,7 +253,7 @@ def ladder(data: Data) -> tuple[float, ...]:
 
 def rungs(actuator: Actuator, period: float) -> tuple[float, ...]:
     """The same for an actuator and samples a `period` [s] apart."""
-    own = max(actuator.scales.time, SAMPLES * period)
+    own = max(actuator.scales.time, SHORTEST_PULL * period)
     return tuple(rung * own for rung in LADDER)
 
 

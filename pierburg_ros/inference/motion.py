@@ -26,13 +26,13 @@ from pierburg_ros.recording.noise import noise_of
 WIDTH = 0.5
 """Length of the filter in the actuator's own time. Chosen: 50 ms for the valve, in which it goes half its travel at
 most; not varied."""
-FEWEST = 7
+SHORTEST_FILTER = 7
 """Least number of samples in the filter. Derived: a parabola through seven leaves the acceleration four degrees of
 freedom."""
-SURE = 6.0
+SURELY_MOVING = 6.0
 """Standard deviations of the velocity's own noise above which the shaft surely moves. Derived: white noise passes that
 once in 5e8 samples."""
-APART = 6
+KEPT_OF_FILTER = 6
 """Samples in a length of the filter that are kept. Derived: what is nearer shares most of its window."""
 NEAR_STOP = 0.02
 """Share of the travel next to a stop in which a contact may bear part of the torque. Chosen: the 30 mrad that a stop of
@@ -68,7 +68,7 @@ class Filtered:
 
     def smooth(self, values: Signal, derivative: int = 0) -> Signal:
         """`values` or a derivative of them behind the filter."""
-        return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative, delta=self.step))
+        return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative) / self.step**derivative)
 
     @cached_property
     def ripples(self) -> dict[float, tuple[Signal, Signal]]:
@@ -211,7 +211,7 @@ def motion_of(run: Run, model: Model, constant: float) -> Motion:
     what is in force before and after it: without that half sample every recording would show a delay.
     """
     actuator, step = model.actuator, float(np.median(np.diff(run.time)))
-    window = max(round(WIDTH * constant / step) | 1, FEWEST)
+    window = max(round(WIDTH * constant / step) | 1, SHORTEST_FILTER)
     time = np.arange(run.time[0], run.time[-1], step)
     window = min(window, (time.size - 1) | 1)
     inputs = run.inputs.at(time)
@@ -234,7 +234,7 @@ def motion_of(run: Run, model: Model, constant: float) -> Motion:
     for gap in np.flatnonzero(np.diff(run.time) > GAP * step):
         usable &= (time < run.time[gap] - window * step) | (time > run.time[gap + 1] + window * step)
     usable[:window] = usable[-window:] = False
-    return Motion(whole, np.flatnonzero(usable)[:: max(window // APART, 1)])
+    return Motion(whole, np.flatnonzero(usable)[:: max(window // KEPT_OF_FILTER, 1)])
 
 
 def moving(whole: Filtered, noise: float) -> Flags:
@@ -243,5 +243,5 @@ def moving(whole: Filtered, noise: float) -> Flags:
     spread = noise / math.sqrt(window)
     if whole.actuator.quantity != "speed":
         spread = noise * math.sqrt(12.0 / window**3) / whole.step
-    sure = np.abs(whole.velocity) > SURE * spread
+    sure = np.abs(whole.velocity) > SURELY_MOVING * spread
     return np.asarray(np.convolve(sure, np.ones(window), "same") > window - 0.5)

@@ -11,6 +11,7 @@ from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder
+from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, Span, balanced, forms, promises
 from pierburg_ros.plant import Model
 
@@ -25,8 +26,6 @@ that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
-BRIEF = 8
-"""Iterations of a fit that is one of several to choose from. Work: what leads is fitted on."""
 MOVES = 2
 """Times that the moment of a change is read off a fit, and the fit made again. Work: the second moves it by samples."""
 ALIAS = 0.05
@@ -34,10 +33,10 @@ ALIAS = 0.05
 supply is absorbed to 78 to 99 % by the resistance; not varied."""
 BEAM = 3
 """Explanations of each size that are grown and fitted on. Work: as for `TRIED`."""
-WORTH = 0.9
+WORTH_ADDING = 0.9
 """Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
 for another effect to be added. Chosen: a tenth is worth the work; not varied."""
-NEAR = 4.0
+GROWN = 4.0
 """Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen:
 what leaves twice the error of the best hardly holds the effect that explains most; not varied."""
 DEEPEST = 3
@@ -84,15 +83,15 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
             before, leading = leading[0], nearest(led)
             ended = best_of_support([*ended, *followed(led, search.pool)])
             ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
-            if excess(leading[0]) > WORTH * excess(before):
+            if excess(leading[0]) > WORTH_ADDING * excess(before):
                 break
     return ended
 
 
 def nearest(fits: Sequence[Fit]) -> list[Fit]:
-    """The fits that leave at most `NEAR` times the error of the best, best first."""
+    """The fits that leave at most `GROWN` times the error of the best, best first."""
     ordered = sorted(fits, key=lambda fit: fit.chi2)
-    return [fit for fit in ordered if excess(fit) <= NEAR * excess(ordered[0])]
+    return [fit for fit in ordered if excess(fit) <= GROWN * excess(ordered[0])]
 
 
 def without_one(fit: Fit, pool: Executor) -> list[Fit]:

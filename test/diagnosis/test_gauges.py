@@ -1,8 +1,7 @@
 """A diagnosis knows no units: of the same recording in others it says the same.
 
 Factors that are powers of two only change the exponents of floating-point numbers, so that every number of a search has
-to be the same: any number with a unit that is left in it shows. `benchmarks/gauges.py` tries decimal factors over all
-effects.
+to be the same: any number with a unit that is left in it shows.
 """
 
 from __future__ import annotations

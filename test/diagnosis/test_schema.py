@@ -20,9 +20,10 @@ from pierburg_ros.diagnosis.schema import (
 QUALITY = DataQuality(rate=500.0, jitter=0.0, gaps=0, saturated_share=0.0, stops_touched=[], excited="nothing")
 NOTHING = Errors(nominal_rmse=0.2, recalibrated_rmse=math.nan, final_rmse=math.inf)
 CONTRACT = {
-    "schema", "recordings", "quantity", "unit", "input", "motion", "verdict", "summary", "stopped", "effects",
-    "doubted", "parameters", "changes", "locations", "regimes", "simulation", "fit", "candidates", "not_testable",
-    "cannot_act", "ruled_out", "remaining", "excluded", "residual_torque", "data_quality", "input_faults", "advice",
+    "schema", "recordings", "quantity", "unit", "input", "motion", "verdict", "summary", "model_of", "effort",
+    "effects", "doubted", "re_estimated_share", "parameters", "changes", "locations", "regimes", "simulation", "fit",
+    "candidates", "not_testable", "cannot_act", "ruled_out", "remaining", "excluded", "residual_torque",
+    "data_quality", "input_faults", "advice",
 }  # fmt: skip
 
 
@@ -43,7 +44,7 @@ def test_has_the_fields_of_the_contract(tmp_path):
     document().write(tmp_path / "diagnosis.json")
     content = json.loads((tmp_path / "diagnosis.json").read_text())
     assert set(content) == CONTRACT
-    assert content["schema"] == 2 and content["residual_torque"] is None
+    assert content["schema"] == 3 and content["residual_torque"] is None
 
 
 def test_a_number_that_does_not_exist_is_null():

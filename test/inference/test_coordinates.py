@@ -6,36 +6,31 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, PIERBURG, data_on, recording
 
-from pierburg_ros.diagnosis.search.candidates import possible, starts_of
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.inference.coordinates import Coordinates, in_order, without_effects
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
+from pierburg_ros.inference.shortlist import Span, forms
 from pierburg_ros.plant import Model
 
 STICTION = Variant("static_friction", ("breakaway_torque", "stribeck_velocity"))
-VARIANTS = [
-    Variant(effect.id, variant.free, tuple(variant.fixed.items()))
-    for effect in possible(PIERBURG)
-    for variant in effect.variants
-]
+STARTS: list[tuple[Variant, list[Start]]] = forms(
+    data_on(recording({}, duration=5.0)), NOMINAL, Span(duration=5.0 / PIERBURG.scales.time, low=0.0, high=1.0)
+)
+"""Every way in which an effect may act in the valve, and where a search for it starts."""
 FRICTION = "coulomb_friction"
 BREAKAWAY = "static_friction.breakaway_torque"
 VISCOUS = "viscous_friction.coefficient"
 DIFFERENCE = "direction_dependent_friction.viscous_difference"
 
 
-@pytest.fixture(scope="module")
-def starts() -> dict[Variant, list[Start]]:
-    """Where a search for each variant may start."""
-    return starts_of(data_on(recording({}, duration=5.0)), NOMINAL)
-
-
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.label + "-" + variant.free[0])
-def test_values_survive_the_way_through_coordinates(variant: Variant, starts: dict[Variant, list[Start]]) -> None:
+@pytest.mark.parametrize(
+    ("variant", "starts"), [pytest.param(*each, id=f"{each[0].label}-{each[0].free[0]}") for each in STARTS]
+)
+def test_values_survive_the_way_through_coordinates(variant: Variant, starts: list[Start]) -> None:
     names = tuple(f"{variant.effect}.{name}" for name in variant.free)
     coordinates = Coordinates((FRICTION, *names), NOMINAL, 60.0)
-    for start in starts[variant]:
-        values = {f"{variant.effect}.{name}": value for name, value in start.items()}
+    for start in starts:
+        values = {f"{variant.effect}.{name}": start[name] for name in variant.free}
         values[FRICTION] = 0.18
         if BREAKAWAY in values:
             values[BREAKAWAY] += 0.18

@@ -3,9 +3,8 @@
 import numpy as np
 from support.recordings import PIERBURG
 
-from pierburg_ros.diagnosis.evidence.motion import Motion, motion_of
-from pierburg_ros.estimation.initial_state import InitialState
-from pierburg_ros.estimation.run import Run
+from pierburg_ros.diagnosis.motion import Motion, motion_of
+from pierburg_ros.inference.data import Run, start_of
 from pierburg_ros.plant import Inputs
 
 NOISE = 0.002
@@ -26,14 +25,15 @@ def run_along(corners=CORNERS, duty=None, rate: float = 500.0, seed: int = 0) ->
     inputs = Inputs(time, np.zeros(time.size) if duty is None else duty(time))
     measured = hall(np.interp(time, times, angles)) + noise
     return Run(
-        "drawn.mcap",
-        inputs,
-        time,
-        measured,
-        "hall_voltage",
-        InitialState.of(time, measured),
-        np.ones(time.size, dtype=bool),
-        np.zeros(time.size, dtype=bool),
+        name="drawn.mcap",
+        number=0,
+        inputs=inputs,
+        time=time,
+        measured=measured,
+        shown=start_of(time, measured),
+        block=np.zeros(time.size, dtype=np.int64),
+        counts=np.ones(time.size, dtype=bool),
+        quantity="hall_voltage",
     )
 
 

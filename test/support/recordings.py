@@ -7,6 +7,7 @@ import numpy as np
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.closed_loop import simulate_runs
 from pierburg_ros.control import Settings
+from pierburg_ros.inference.data import Data, data_of
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 
@@ -24,6 +25,11 @@ MODEST = Settings().with_values(
     }
 )
 """A controller with less duty than the package's own, so that the shaft rests between setpoints."""
+
+
+def data_on(*recordings: Recording) -> Data:
+    """The recordings of the nominal valve as a diagnosis sees them, split into what trains, validates and tests."""
+    return data_of(recordings, NOMINAL)
 
 
 def recording(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.diagnosis.result import Characteristic, Exhibits, Result, Tried, View
+from pierburg_ros.diagnosis.result import Characteristic, Exhibits, Points, Result, Tried, View
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -56,7 +56,10 @@ def diagnosis(**changes) -> Diagnosis:
         "locations": [Location(start=12.1, end=12.6, share=0.08, regime="leaving the closed stop")],
         "regimes": [Regime(variable="angle", range=(0.0, 0.5), unit="rad", share_of_residual=0.74, share_of_time=0.09)],
         "fit": FitQuality(noise_floor=0.004, training=errors, validation=errors, horizons=horizons),
-        "candidates": [Candidate(id="backlash", validation_rmse=0.06, evidence=12.0, status="rejected")] * 20,
+        "candidates": [
+            Candidate(id="backlash", validation_rmse=0.06, heldout_rmse=0.06, evidence=12.0, status="rejected")
+        ]
+        * 20,
         "not_testable": [NotTestable(id="backlash", why="the flanks never part", record="duty below 0")],
         "ruled_out": [
             RuledOut(id="backlash", parameter="gap", below=0.005, unit="rad"),
@@ -91,7 +94,9 @@ def result(drawn: int = 5, **changes) -> Result:
     keys = ["nominal", "recalibrated", "final", *(row.key for row in rivals)]
     views = tuple(view(name, keys) for name in said.recordings)
     curves = dict.fromkeys(keys[:3], (TIME[:50], TIME[:50]))
-    law = Characteristic("friction", "friction", "velocity [rad/s]", "torque [N.m]", curves, (TIME[:9], TIME[:9]))
+    law = Characteristic(
+        "friction", "friction", "velocity [rad/s]", "torque [N.m]", curves, Points(TIME[:9], TIME[:9], 0.1 * TIME[:9])
+    )
     model = Model.nominal(read_actuator("pierburg"))
     return Result(said, model, (), signals, Exhibits(views, tried, (law,)))
 

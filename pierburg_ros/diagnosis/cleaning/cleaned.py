@@ -13,7 +13,7 @@ from pierburg_ros.diagnosis.cleaning.saturation import saturated
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span, spans_of
 
-APART = 5
+SPAN_GAP = 5
 """Largest distance [samples] between left-out samples that belong to one span. Work: each span is an entry."""
 
 
@@ -62,7 +62,7 @@ def _without_saturation(given: Cleaned, number: int) -> Cleaned:
         return given
     unit, ends = given.recording.unit, sorted({float(np.min(measured[found])), float(np.max(measured[found]))})
     what = f"the reading stands at the end of its range ({ends[-1]:.4g} {unit})"
-    omissions = tuple(Omission(number, span, what) for span in spans_of(time, found, APART))
+    omissions = tuple(Omission(number, span, what) for span in spans_of(time, found, SPAN_GAP))
     remark = (
         f"For {np.mean(found) * (time[-1] - time[0]):.3g} s {what}: samples there are left out. Choose a converter or"
         " an amplifier with more range."

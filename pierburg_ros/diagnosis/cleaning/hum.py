@@ -20,7 +20,7 @@ PERIOD = 0.1
 STILL = 4.0
 """Largest difference of means over `PERIOD` while the shaft stands still, in standard deviations. Derived: noise
 exceeds it with probability 6e-5."""
-LEAST = 5.0
+SHORTEST_STANDSTILL = 5.0
 """Shortest standstill [s] from which a line is reported. Derived: at 500 Hz, hum of a third of the noise is then
 detected at 12 standard deviations, and frequencies are distinguished to 0.2 Hz."""
 CERTAIN = 30.0
@@ -55,7 +55,7 @@ def hum(time: Signal, measured: Signal) -> list[Line]:
     """The mains lines in a measured signal, strongest first; none where the standstill is too short."""
     interval = float(np.median(np.diff(time)))
     still = standing(time, measured)
-    if np.count_nonzero(still) * interval < LEAST:
+    if np.count_nonzero(still) * interval < SHORTEST_STANDSTILL:
         return []
     noise, found = noise_of(time, measured), []
     for frequency in (multiple * mains for multiple in MULTIPLES for mains in MAINS):

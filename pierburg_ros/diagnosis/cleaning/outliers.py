@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.recording.noise import noise_of
 
-WINDOW = 7
+MEDIAN_WINDOW = 7
 """Length of the window [samples] of the median with which a sample is compared. Derived: up to three outliers in a row
 are found, half of the other samples. If one sample in a hundred is an outlier, four of seven are in 3e-7 of the
 windows."""
@@ -27,7 +27,7 @@ a signal that rests on one step of the converter, half a step counts as the usua
 TURNING = 3.0
 """Further distance that an outlier must have, in steps of the motion from sample to sample. Derived: at an abrupt
 reversal a sample is off by one. It is off by two if the motion reverses between two samples and returns faster."""
-MOST = 0.1
+MOST_OUTLIERS = 0.1
 """Largest share of samples that may be outliers. Chosen: beyond it the signal itself jumps to and fro."""
 
 
@@ -45,14 +45,14 @@ def outliers(time: Signal, measured: Signal) -> Flags:
         rest = measured[kept]
         more = _off_median(rest, noise, least) | _off_lines(rest, noise, least)
         found[kept[more]] = True
-        if not np.any(more) or np.mean(found) > MOST:
+        if not np.any(more) or np.mean(found) > MOST_OUTLIERS:
             break
-    return found if np.mean(found) <= MOST else np.zeros_like(found)
+    return found if np.mean(found) <= MOST_OUTLIERS else np.zeros_like(found)
 
 
 def _off_median(values: Signal, noise: float, least: float) -> Flags:
     """Which samples lie far from the median of their neighbours, compared with the usual distance there."""
-    around = sliding_window_view(np.pad(values, WINDOW // 2, mode="edge"), WINDOW)
+    around = sliding_window_view(np.pad(values, MEDIAN_WINDOW // 2, mode="edge"), MEDIAN_WINDOW)
     median = np.median(around, axis=1)
     spread = np.median(np.abs(around - median[:, np.newaxis]), axis=1)
     return np.asarray(np.abs(values - median) > NOISES * noise + SPREADS * np.maximum(spread, least))

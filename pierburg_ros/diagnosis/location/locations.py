@@ -15,7 +15,7 @@ from pierburg_ros.diagnosis.schema import Location
 LONG = 10.5
 """Length from which a window is described by its beginning and its range of motion, in the actuator's own time. Chosen:
 1 s for the valve; it decides a word."""
-RECENT = 5.25
+JUST_BEFORE = 5.25
 """Time within which a pull counts as just before a movement, in the actuator's own time. Chosen: half a second for the
 valve; it decides a word."""
 PLACE = 0.09
@@ -103,7 +103,7 @@ def _travelling(motion: Motion, inside: NDArray[np.intp]) -> str:
 
 def _pulled_before(motion: Motion, first: int) -> bool:
     """Whether the input was negative at rest just before sample `first`."""
-    recent = (motion.time >= motion.time[first] - RECENT * motion.scales.time) & (motion.time < motion.time[first])
+    recent = (motion.time >= motion.time[first] - JUST_BEFORE * motion.scales.time) & (motion.time < motion.time[first])
     return bool(np.any(recent & ~motion.moving & (motion.effort < -PRESSING)))
 
 

@@ -15,13 +15,13 @@ from pierburg_ros.diagnosis.schema import Regime
 BINS = 24
 """Number of ranges of about equal time into which a variable is cut. Chosen: 4 % of the time each, finer than
 `CONTRAST` requires; not varied."""
-BLOCK = 5.25
+SHUFFLED_BLOCK = 5.25
 """Shortest block that stays together when the residual is shuffled, in the actuator's own time; see `block_length`.
 Chosen: half a second for the valve, so that a movement stays whole; not varied."""
 SHUFFLES = 250
 """Number of random orders with which a range is compared. Derived: the smallest chance they can show is 1 in 251, well
-under `CHANCE`."""
-CHANCE = 0.01
+under `REPORTED_CHANCE`."""
+REPORTED_CHANCE = 0.01
 """Largest chance at which a range is reported. Given: the usual 1 %."""
 CONTRAST = 0.15
 """Smallest difference between share of residual and share of time at which a range is reported. Chosen: with less, it
@@ -89,20 +89,19 @@ def variables(motion: Motion) -> dict[str, Signal]:
 
 
 def block_length(time: Signal, energy: Signal, own: float) -> float:
-    """Length [s] of blocks that keep correlated samples together: twice the correlation time of `energy`, at least
-    `BLOCK`.
+    """Length [s] of blocks that keep correlated samples together: twice the correlation time of `energy`.
 
-    `own` is the actuator's own time [s]. The length is at most a twentieth of the recording, or too few orders would be
-    left.
+    It is at least `SHUFFLED_BLOCK`; `own` is the actuator's own time [s]. The length is at most a twentieth of the
+    recording, or too few orders would be left.
     """
-    step = 0.1 * BLOCK * own
+    step = 0.1 * SHUFFLED_BLOCK * own
     grid = np.arange(time[0], time[-1], step)
     series = np.interp(grid, time, energy) - float(np.mean(energy))
     spectrum = np.abs(np.fft.rfft(series, 2 * series.size)) ** 2
     correlation = np.fft.irfft(spectrum)[: series.size]
     below = np.flatnonzero(correlation < correlation[0] / np.e)
     correlated = step * float(below[0]) if below.size else float(time[-1])
-    return float(np.clip(2.0 * correlated, min(BLOCK * own, time[-1] / 20.0), time[-1] / 20.0))
+    return float(np.clip(2.0 * correlated, min(SHUFFLED_BLOCK * own, time[-1] / 20.0), time[-1] / 20.0))
 
 
 def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArray[np.intp]:
@@ -115,8 +114,10 @@ def _shuffled(time: Signal, length: float, random: np.random.Generator) -> NDArr
 def _regime(
     name: str, unit: str, values: Signal, energy: Signal, weight: Signal, orders: Sequence[NDArray[np.intp]]
 ) -> Regime | None:
-    """The range of `values` in which `energy` is concentrated; None where it is so by chance or not at all; `weight` is
-    time."""
+    """The range of `values` in which `energy` is concentrated, by `weight` in time.
+
+    None where it is so by chance or not at all.
+    """
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
     if edges.size < 3:
         return None
@@ -127,7 +128,7 @@ def _regime(
         return None
     exceeded = sum(_gathered(place, energy[order], time).contrast >= best.contrast for order in orders)
     chance = (1 + exceeded) / (1 + len(orders))
-    if chance > CHANCE:
+    if chance > REPORTED_CHANCE:
         return None
     inside = (place >= best.first) & (place <= best.last)
     return Regime(

@@ -9,7 +9,7 @@ import numpy as np
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.kernel import kernel
 
-SHORTEST = 2.6
+SHORTEST_LOCATION = 2.6
 """Shortest window that a diagnosis names, in the actuator's own time. Derived: for every shipped actuator it is more
 than the 0.2 s that section 5 of docs/contract.md states."""
 MOST_BINS = 600

@@ -23,11 +23,11 @@ from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
 from pierburg_ros.plant.torques import friction, load
 
-NODES = 121
+CURVE_POINTS = 121
 """Number of points of a curve. Work: one is drawn every five pixels."""
-BINS = 24
+POINTS_OF_CURVE = 24
 """Points of the recordings beside a curve. Chosen: each is the mean of a twenty-fourth of the samples."""
-ALIKE = 6.0
+CORRELATED = 6.0
 """Neighbouring samples of the balance that count as one. Derived: so many are kept in a length of its filter."""
 
 
@@ -50,7 +50,7 @@ def _friction(models: Mapping[str, Model], missing: Lacking) -> Characteristic:
     fastest = float(np.quantile(np.abs(missing.velocity), 0.98)) if missing.velocity.size else 1.0
     middle = float(np.median(missing.angle)) if missing.angle.size else 0.0
     # more nodes near standstill, where the law bends
-    side = fastest * np.linspace(0.0, 1.0, NODES // 2) ** 2
+    side = fastest * np.linspace(0.0, 1.0, CURVE_POINTS // 2) ** 2
     velocity = np.concatenate([-side[::-1], [math.nan], side])
     curves = {name: (velocity, friction_torque(model, velocity, middle)) for name, model in models.items()}
     inside = np.abs(missing.velocity) <= fastest
@@ -91,7 +91,7 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
 
 def _load(models: Mapping[str, Model], missing: Lacking, angle: Signal) -> Characteristic:
     """Torque of spring, weight and all else that loads the shaft over its angle."""
-    nodes = np.linspace(*_travel(models["final"], angle), NODES)
+    nodes = np.linspace(*_travel(models["final"], angle), CURVE_POINTS)
     motion = models["final"].actuator.motion
     drawn = travel_factor(motion)
     curves = {name: (drawn * nodes, load_torque(model, nodes)) for name, model in models.items()}
@@ -112,7 +112,7 @@ def _sensor(models: Mapping[str, Model], angle: Signal, residual: Signal) -> Cha
     motion = final.actuator.motion
     drawn = travel_factor(motion)
     low, high = _travel(final, angle)
-    shown = np.linspace(low, high, NODES)
+    shown = np.linspace(low, high, CURVE_POINTS)
     values = _values_at(nominal, shown)
     curves = {}
     for name, model in models.items():
@@ -143,7 +143,7 @@ def _plays(model: Model) -> list[Characteristic]:
         if effect.play is None or not effect.acts(model.values):
             continue
         gap = model.values[f"{effect.id}.{effect.play}"]
-        there = np.linspace(0.0, 6.0 * gap, NODES)
+        there = np.linspace(0.0, 6.0 * gap, CURVE_POINTS)
         driving = np.concatenate([there, there[::-1]])
         driven = np.concatenate([np.maximum(there - gap, 0.0), np.minimum(there[::-1], 5.0 * gap)])
         name = effect.id.replace("_", " ")
@@ -171,10 +171,10 @@ def _travel(model: Model, angle: Signal) -> tuple[float, float]:
 
 def binned(x: Signal, y: Signal) -> Points:
     """The means of `y` over bins of about equal numbers of samples along `x`, with twice the error of each mean."""
-    if x.size < 2 * BINS:
+    if x.size < 2 * POINTS_OF_CURVE:
         return Points(x[:0], y[:0], y[:0])
     order = np.argsort(x, kind="stable")
-    parts = [(x[part], y[part]) for part in np.array_split(order, BINS)]
-    error = [2.0 * float(np.std(values)) / math.sqrt(max(values.size / ALIKE, 1.0)) for _, values in parts]
+    parts = [(x[part], y[part]) for part in np.array_split(order, POINTS_OF_CURVE)]
+    error = [2.0 * float(np.std(values)) / math.sqrt(max(values.size / CORRELATED, 1.0)) for _, values in parts]
     means = [(float(np.mean(place)), float(np.mean(values))) for place, values in parts]
     return Points(np.array([each[0] for each in means]), np.array([each[1] for each in means]), np.array(error))

@@ -31,7 +31,7 @@ SCATTERED = 1500
 """Number of points of an error over angle or velocity, roughly. Work: more lie on top of each other."""
 NUMBERED = 6
 """Number of windows that are numbered in a plot. Chosen: more would overlap."""
-CLOSE = 0.05
+ONE_NUMBER = 0.05
 """Windows closer than this share of the recording get one number between them. Derived: the width of two digits on a
 phone."""
 
@@ -89,7 +89,7 @@ def time_figure(
 def apart(places: Sequence[Place], time: Signal) -> bool:
     """Whether the last of some windows is far enough from all others for a number of its own."""
     *others, last = (0.5 * (place.start + place.end) for place in places)
-    return all(abs(last - other) > CLOSE * np.ptp(time) for other in others)
+    return all(abs(last - other) > ONE_NUMBER * np.ptp(time) for other in others)
 
 
 def signal_figure(diagnosis: Diagnosis, signals: Mapping[str, Signal]) -> go.Figure:

@@ -16,7 +16,7 @@ from pierburg_ros.diagnosis.found import Found
 from pierburg_ros.diagnosis.limits import Limit
 from pierburg_ros.diagnosis.location.locations import locations
 from pierburg_ros.diagnosis.location.regimes import regimes
-from pierburg_ros.diagnosis.location.windows import SHORTEST, windows
+from pierburg_ros.diagnosis.location.windows import SHORTEST_LOCATION, windows
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.report import words
 from pierburg_ros.diagnosis.report.tried import identifier, statuses
@@ -49,7 +49,7 @@ from pierburg_ros.inference.fit import Fit, adequate, rms_of
 
 HORIZONS = (0.1, 0.3, 1.0, 3.0)
 """Times over which a model predicts [s]. Given: the times that the report promises."""
-TOLD = 30
+LISTED = 30
 """Most explanations that are listed. Chosen: more help no reader."""
 
 
@@ -298,7 +298,7 @@ def candidates(found: Found) -> list[Candidate]:
         )
         for name, fit in best.items()
     ]
-    return sorted(listed, key=lambda each: each.heldout_rmse if each.heldout_rmse is not None else math.inf)[:TOLD]
+    return sorted(listed, key=lambda each: each.heldout_rmse if each.heldout_rmse is not None else math.inf)[:LISTED]
 
 
 def _on(fit: Fit, samples: Flags) -> float | None:
@@ -363,7 +363,7 @@ def located(found: Found) -> tuple[list[Location], list[Regime]]:
     motion = motion_of(run, found.data.actuator, found.data.noise)
     near = strongest(own.fitter).residual(own.model) * found.data.noise
     residual = found.of_run(near, run)
-    shortest = SHORTEST * found.data.scales.time
+    shortest = SHORTEST_LOCATION * found.data.scales.time
     placed = windows(motion.time, residual**2, shortest=shortest) if motion.time[-1] > 2.0 * shortest else []
     return locations(motion, residual, placed), regimes(motion, residual)
 

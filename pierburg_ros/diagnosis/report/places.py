@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pierburg_ros.diagnosis.schema import Location
 
-APART = 0.005
+MERGED_WINDOWS = 0.005
 """Windows apart by less than this share of the time from the first to the last are merged. Chosen: on a plot as wide as
 a page they touch."""
 
@@ -26,7 +26,7 @@ def places(locations: Sequence[Location]) -> list[Place]:
     """The windows with neighbours merged, sorted by their share; a merged window has the regime of its largest part."""
     merged: list[list[Location]] = []
     ends = [moment for each in locations for moment in (each.start, each.end)]
-    apart = APART * (max(ends) - min(ends)) if ends else 0.0
+    apart = MERGED_WINDOWS * (max(ends) - min(ends)) if ends else 0.0
     for each in sorted(locations, key=lambda place: place.start):
         if merged and each.start - merged[-1][-1].end < apart:
             merged[-1].append(each)

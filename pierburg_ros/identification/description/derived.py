@@ -14,10 +14,10 @@ GRAVITY = 9.81
 WEAKEST, STRONGEST = 1.0, 100.0
 """Smallest and largest ratio of the stall torque of the motor to the torque of load and friction. Derived: with less it
 does not move. Chosen: the valve has 3.8, the bench 1.9, a drive that lifts its load slowly several tens."""
-LIGHTEST, HEAVIEST = 1e-7, 30.0
+RUN_UP, HEAVIEST = 1e-7, 30.0
 """Smallest and largest ratio of the time in which the unloaded motor runs up to that in which it crosses the travel.
 Chosen: the valve has 2e-4, a turntable or a reaction wheel up to several."""
-QUICKEST, SLOWEST = 1e-3, 60.0
+QUICKEST, CROSSING = 1e-3, 60.0
 """Shortest and longest time in which the unloaded motor crosses the travel [s]. Given: a voice coil takes milliseconds,
 a gate valve a minute."""
 FAINTEST, FIERCEST = 1e-3, 1e3
@@ -100,7 +100,7 @@ def _of_motor(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
         scales.time,
         "s",
         QUICKEST,
-        SLOWEST,
+        CROSSING,
         "It is the travel over the no-load speed, which is supply_voltage over gear_ratio and torque_constant.",
     )
     yield Derived(
@@ -115,7 +115,7 @@ def _of_motor(actuator: Actuator, value: dict[str, float]) -> Iterator[Derived]:
         "time to run up over time to cross",
         inertial / scales.time,
         "1",
-        LIGHTEST,
+        RUN_UP,
         HEAVIEST,
         "total_inertia times the no-load speed over the stall torque is the time in which the motor runs up.",
     )

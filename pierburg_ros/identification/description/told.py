@@ -11,11 +11,11 @@ from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Channel, Recording
 
-SAMPLES = 6000
+BENCH_SAMPLES = 6000
 """Number of samples of the simulated bench. Work: a fit of them takes seconds."""
 LEVELS = 60
 """Number of levels of the input. Chosen: 100 samples each on average, from a fraction of a movement to several."""
-HELD = (0.5, 1.5, 6.0)
+HOLDS = (0.5, 1.5, 6.0)
 """Times for which levels are held in turn, in units of the time in which the actuator crosses its travel. Chosen: some
 are too short to settle, and some are long enough."""
 STRENGTH = 0.6
@@ -36,10 +36,10 @@ def bench(model: Model, seed: int = 0) -> Recording:
     random = np.random.default_rng(seed)
     scales, actuator = model.scales, model.actuator
     largest = STRENGTH * {"duty": 1.0, "current": scales.current, "torque": scales.torque}[actuator.input]
-    lengths = scales.time * np.resize(HELD, LEVELS)
+    lengths = scales.time * np.resize(HOLDS, LEVELS)
     changes = np.concatenate([[0.0], scales.time + np.cumsum(lengths)])
     command = Channel(changes[:-1], np.concatenate([[0.0], largest * random.uniform(-1.0, 1.0, LEVELS - 1)]))
-    time = np.linspace(0.0, changes[-1], SAMPLES)
+    time = np.linspace(0.0, changes[-1], BENCH_SAMPLES)
     clean = simulate(model, Inputs(command.time, command.values), time)
     refuse_unsimulated(model, clean, time)
     measured = clean + RESOLUTION * scales.reading * random.standard_normal(time.size)

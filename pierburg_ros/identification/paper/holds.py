@@ -14,7 +14,7 @@ from pierburg_ros.plant.decode import decoded
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.noise import noise_of
 
-SHORTEST = 4.2
+SHORTEST_HOLD = 4.2
 """Shortest hold clear of the stops that says where the shaft settles, in the actuator's own time. Chosen: 0.4 s for the
 valve, a third of its time constant, 1.15 s; not varied."""
 STOP_MARGIN = 0.0127
@@ -78,7 +78,7 @@ def holds(recording: Recording, actuator: Actuator) -> list[Hold]:
     return [
         Hold(float(duty[part.start]), recording.time[part], angle[part])
         for part in parts
-        if recording.time[part.stop - 1] - recording.time[part.start] >= SHORTEST * own.time
+        if recording.time[part.stop - 1] - recording.time[part.start] >= SHORTEST_HOLD * own.time
     ]
 
 

@@ -16,7 +16,7 @@ from pierburg_ros.recording import Recording
 SMALLEST = 1e-9
 """Smallest standard deviation of a settled angle, as a share of the largest angle. Derived: a simulation without noise
 is rounded by no more."""
-FEWEST = 3
+ANGLES_OF_BRANCH = 3
 """Number of settled angles that each branch needs. Derived: two fix a line, one more says whether it is one."""
 
 
@@ -60,7 +60,7 @@ def static_characteristic(recordings: Sequence[Recording], actuator: Actuator) -
         return None
     points, time_constant = settled(found, scales)
     opening = sum(point.direction > 0 for point in points)
-    if min(opening, len(points) - opening) < FEWEST:
+    if min(opening, len(points) - opening) < ANGLES_OF_BRANCH:
         return None
     return _line(points, time_constant)
 

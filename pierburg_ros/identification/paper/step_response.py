@@ -26,7 +26,7 @@ Table I, 66 krad/s. One sample at 500 Hz is 2,000 of its time constants: no reco
 REST = 0.21
 """Time before a step in which the shaft must rest, in the actuator's own time. Chosen: 20 ms for the valve, ten
 samples; not varied."""
-SHORTEST = 5.2
+SHORTEST_RESPONSE = 5.2
 """Length of the shortest step that is fitted, in the actuator's own time. Chosen: half a second for the valve, less
 than half of its time constant; not varied."""
 
@@ -70,7 +70,7 @@ def steps_from_rest(recording: Recording, actuator: Actuator) -> list[Step]:
     for start, end, duty in zip(times[:-1], times[1:], recording.command.values, strict=True):
         inside = (recording.time >= start) & (recording.time < end)
         before = (recording.time < start) & (recording.time >= start - REST * own.time)
-        if end - start < SHORTEST * own.time or not before.any() or np.mean(angle[before]) > 0.5 * margin:
+        if end - start < SHORTEST_RESPONSE * own.time or not before.any() or np.mean(angle[before]) > 0.5 * margin:
             continue
         open_stop = angle[inside] > actuator.upper_stop - margin
         length = int(np.argmax(open_stop)) if open_stop.any() else open_stop.size

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import ceil, log2, pi
 
 import numpy as np
 
@@ -52,7 +52,7 @@ IN_SI = {"sensor_msgs", "control_msgs", "trajectory_msgs"}
 """Packages whose joints are in radian (REP 103)."""
 TIMES = {"sec", "nanosec", "secs", "nsecs", "micros", "millis", "stamp", "timestamp", "time", "seq", "us", "ns", "ms"}
 """Words in the name of a time or a number of messages, which is no signal."""
-TURN = 2.0 * pi
+TURN = 2.0 * math.pi
 LARGEST_DEGREES = 400.0
 """Angles beyond a turn [rad] up to here are taken for degrees."""
 CONVERTERS = (255, 1023, 4095, 16_383, 32_767, 65_535)
@@ -216,7 +216,7 @@ def in_unit(field: Field, signal: str, named: str, largest: float) -> tuple[str,
 
 def full_scale(largest: float) -> int:
     """The largest count of the converter or timer that gives `largest`."""
-    return next((each for each in CONVERTERS if largest <= each), 2 ** ceil(log2(largest + 1.0)) - 1)
+    return next((each for each in CONVERTERS if largest <= each), 2 ** math.ceil(math.log2(largest + 1.0)) - 1)
 
 
 def by_range(field: Field) -> Guess | None:

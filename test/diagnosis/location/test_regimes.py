@@ -5,8 +5,8 @@ import pytest
 from support.motions import NOISE, run_along
 from support.recordings import PIERBURG
 
-from pierburg_ros.diagnosis.evidence.motion import motion_of
 from pierburg_ros.diagnosis.location.regimes import regimes
+from pierburg_ros.diagnosis.motion import motion_of
 
 
 def wandering(seed: int):

@@ -1,8 +1,9 @@
 """Windows, limits and laws as the page shows them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from support.fits import made_up
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.report.allowed import bars
@@ -40,9 +41,11 @@ def test_limits_stand_beside_typical_sizes():
 
 def test_all_parameters_re_estimated_have_one_name():
     every = ("armature_resistance", "spring_preload", "spring_stiffness")
-    recalibrated = made_up(Explanation(every), 3.0, NOMINAL)
-    sagging = made_up(Explanation(every, (Variant("supply_sag", ("source_resistance",)),)), 2.0, NOMINAL)
-    single = made_up(Explanation(every[:1]), 3.0, NOMINAL)
+    sag = Variant("supply_sag", ("source_resistance",))
+    recalibrated, sagging, single = (
+        SimpleNamespace(explanation=each)
+        for each in (Explanation(every), Explanation(every, (sag,)), Explanation(every[:1]))
+    )
     assert shortened(sagging, recalibrated) == "parameters_re-estimated+supply_sag"
     assert shortened(recalibrated, recalibrated) == "parameters_re-estimated"
     assert shortened(single, recalibrated) == shortened(single, single) == "armature_resistance"

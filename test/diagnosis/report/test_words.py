@@ -1,20 +1,37 @@
 """Why an effect is believed, and what to record next, in words with their numbers."""
 
-import math
+from types import SimpleNamespace
 
 import pytest
-from support.fits import made_up
-from support.recordings import NOMINAL
+from support.recordings import PIERBURG
 
-from pierburg_ros.diagnosis.evidence.quality import Limit
-from pierburg_ros.diagnosis.remainder.left_out import LeftOut
-from pierburg_ros.diagnosis.report.words import advice, cautioned, needless, reason, summary, unsure
-from pierburg_ros.diagnosis.schema import BaseParameter, Change, Effect, Errors, FitQuality, NotTestable
-from pierburg_ros.diagnosis.search.weighing import Weight
-from pierburg_ros.diagnosis.verdict.conclusion import Support
+from pierburg_ros.actuators import read_actuator
+from pierburg_ros.diagnosis.found import Share, Shares
+from pierburg_ros.diagnosis.quality import Limit
+from pierburg_ros.diagnosis.report.words import (
+    advice,
+    cautioned,
+    divided,
+    handed_out,
+    held,
+    reason,
+    stopped,
+    summary,
+    unseen_error,
+)
+from pierburg_ros.diagnosis.schema import (
+    BaseParameter,
+    Change,
+    Doubted,
+    Effect,
+    Errors,
+    FitQuality,
+    NotTestable,
+    Remaining,
+)
+from pierburg_ros.inference.choice import Name
 from pierburg_ros.inference.explanation import Explanation, Variant
 
-RIVAL = made_up(Explanation(("coulomb_friction",), (Variant("backlash", ("gap",)),)), 1.2, NOMINAL)
 TIED = Effect(
     id="viscous_friction",
     confidence=0.99,
@@ -22,75 +39,129 @@ TIED = Effect(
     indistinguishable_from=[["armature_resistance", "torque_constant"]],
     explanation="",
 )
+NOTHING_LEFT = Remaining(share=0.0, looks_like="noise")
+LEFT = Remaining(share=0.3, looks_like="a torque that grows with the square of the speed")
+PLAY = Explanation(("coulomb_friction",), (Variant("backlash", ("gap",)),))
+UNDIVIDED = Shares(None, {}, None)
+
+
+def fit(explanation: Explanation = PLAY, ratio: float = 1.0, shape: object = None) -> SimpleNamespace:
+    """What the words read of a fit."""
+    return SimpleNamespace(explanation=explanation, ratio=ratio, model=SimpleNamespace(residual_torque=shape))
+
+
+def found(verdict: str = "unexplained", written=None, shares=UNDIVIDED, stopped_by=None, actuator=PIERBURG):
+    """What the words read of a diagnosis: its verdict, the model that is handed out, shares and effort."""
+    handed = fit()
+    return SimpleNamespace(
+        choice=SimpleNamespace(verdict=verdict, handed=handed),
+        data=SimpleNamespace(actuator=actuator),
+        written=written or handed,
+        shares=shares,
+        inferred=SimpleNamespace(
+            effort=SimpleNamespace(stopped_by=stopped_by),
+            drifts=("armature_resistance", "coulomb_friction"),
+            free=("armature_resistance", "torque_constant", "coulomb_friction"),
+        ),
+    )
+
+
+def quality_of(final: float = 0.004, nominal: float = 0.1) -> FitQuality:
+    errors = Errors(nominal_rmse=nominal, recalibrated_rmse=0.01, final_rmse=final)
+    return FitQuality(noise_floor=0.004, training=errors, validation=errors)
+
+
+def said(verdict, effects=(), parameters=None, changes=(), left=NOTHING_LEFT, unsure=(), **of) -> str:
+    """The summary."""
+    return summary(found(verdict, **of), effects, parameters or {}, changes, quality_of(), left, unsure)
+
+
+def spring(**changes) -> BaseParameter:
+    fields = {"nominal": 0.1, "value": 0.2, "unit": "N.m", "ci95": None, "identifiable": True, "drifted": True}
+    return BaseParameter(**{**fields, **changes})
 
 
 @pytest.mark.parametrize(
-    ("support", "words"),
-    [
-        (
-            Support(0.99, gain=812.34, without=RIVAL),
-            "quantities is coulomb friction + backlash: it fits worse by 812 in",
-        ),
-        (
-            Support(0.5, gain=-6.9, without=RIVAL),
-            "quantities is coulomb friction + backlash: it fits better by 7 in",
-        ),
-        (Support(1.0), "All samples lie on this grid"),
-        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 1, 2, ("a",))), "helps in 1 of 2 parts, on a. "),
-        (Support(0.8, left_out=LeftOut(0.02, 0.0104, 2, 2, ("a", "b"))), "0.0104 V with it; all recordings share it. "),
-        (Support(0.8, weight=Weight(800.0, 200.0)), "explains 80 % of the evidence against the model without it"),
-        (
-            Support(0.8, weight=Weight(800.0, 200.0, 90.0, 0.65, apart=0.25)),
-            "gains 90. It moves the signal by 1.4 times the remaining error. The best replacement gains 75 % as much.",
-        ),
-    ],
-    ids=[
-        "evidence",
-        "a better fit with more numbers",
-        "grid",
-        "some recordings",
-        "all recordings",
-        "beside what remains",
-        "of the error",
-    ],
+    ("rival", "other"),
+    [(PLAY, "coulomb friction + backlash"), (Explanation(), "the model as described")],
+    ids=["another", "nominal"],
 )
-def test_an_effect_is_believed_for_a_reason_with_its_numbers(support: Support, words: str) -> None:
-    assert words in reason(support, "V")
+def test_an_effect_is_believed_for_a_reason_with_its_numbers(rival: Explanation, other: str) -> None:
+    told = reason(Name(0.99, fit(ratio=1.0123), fit(rival, ratio=2.5)))
+    assert told == f"With it the error is 1.01 times the noise, without it at best 2.5 times ({other})."
 
 
 def test_what_is_not_sure_enough_is_told_with_its_probability() -> None:
-    told = unsure({"backlash": 0.43, "sensor_lag": 0.081}, "An error remains.")
-    assert told == "An error remains. Not sure enough to be named: backlash (43 %), sensor lag (8.1 %)."
-    assert unsure({}, "An error remains.") == "An error remains."
+    unsure = [
+        Doubted(id=effect, confidence=sure, explanation="")
+        for effect, sure in (("backlash", 0.43), ("sensor_lag", 0.081))
+    ]
+    text = said("unexplained", left=LEFT, unsure=unsure)
+    assert text.startswith(
+        "An error remains that no effect explains. Not sure enough to be named: backlash (43 %), sensor lag (8.1 %). "
+        "What remains is a torque that grows with the square of the speed. "
+    )
+    assert "Not sure" not in said("unexplained", left=LEFT)
 
 
 def test_the_headline_says_what_cannot_be_told_apart_and_not_the_first_of_it() -> None:
-    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.01, final_rmse=0.004)
-    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
-    said = summary("missing_physics", [TIED], {}, [], fit, "V")
-    assert said.startswith(
+    text = said("missing_physics", [TIED])
+    assert text.startswith(
         "The model lacks viscous friction, or armature resistance and torque constant together, which fit alike. "
     )
-    spring = BaseParameter(
-        nominal=0.1, value=0.2, unit="N.m", ci95=None, identifiable=True, drifted=True,
-        indistinguishable_from=[["coulomb_friction"]],
-    )  # fmt: skip
-    said = summary("parameter_drift", [], {"spring_preload": spring}, [], fit, "V")
-    assert "instead of 0.1, or coulomb friction, which fit alike. " in said
+    text = said("parameter_drift", parameters={"spring_preload": spring(indistinguishable_from=[["coulomb_friction"]])})
+    assert "instead of 0.1, or coulomb friction, which fit alike. " in text
 
 
-@pytest.mark.parametrize(("after", "warned"), [(0.05, False), (0.105, False), (0.15, True)])
-def test_a_corrected_model_that_predicts_worse_is_not_recommended(after: float, warned: bool) -> None:
-    """On unseen data the model as described is off by 0.1."""
-    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.09, final_rmse=after)
-    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
-    assert ("use the model as described" in summary("unexplained", [TIED], {}, [], fit, "V")) == warned
+def test_an_effect_that_shows_beside_what_remains_is_a_part_of_it() -> None:
+    text = said("unexplained", [TIED], left=LEFT)
+    assert "An error remains that no effect explains. Part of it is viscous friction, or armature" in text
+
+
+def test_the_mismatch_is_divided_into_shares() -> None:
+    shares = Shares(0.2, {"backlash": Share(0.5, 0.7)}, 0.3)
+    named = Effect(id="backlash", confidence=0.99, parameters={}, share=0.5, explanation="")
+    assert divided(found(shares=shares), [named]) == [
+        "Of the squared error of the model as described re-estimated parameters take 20 %, backlash 50 %, and 30 % is"
+        " left."
+    ]
+    assert divided(found(), [named]) == []
+
+
+def test_a_model_that_is_not_that_of_the_verdict_is_said() -> None:
+    assert handed_out(found()) == ""
+    assert "handed out is the model as described:" in handed_out(found(written=fit(Explanation())))
+    one = handed_out(found(written=fit(shape={})))
+    assert "handed out is one with coulomb friction + backlash and a map of the missing torque: of all" in one
+
+
+@pytest.mark.parametrize(
+    ("by", "words"), [("budget", "larger --budget"), ("interrupt", "Interrupted"), ("clock", "depends on the machine")]
+)
+def test_a_search_that_ended_early_says_so_first(by: str, words: str) -> None:
+    text = stopped(found(stopped_by=by))
+    assert words in text
+    assert said("consistent", stopped_by=by).startswith(text)
+    assert stopped(found()) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("coulomb_friction", None),
+        ("armature_resistance", "accounts for"),
+        ("torque_constant", "do not tell it from"),
+        ("gear_ratio", "does not free it"),
+    ],
+)
+def test_a_parameter_that_was_not_fitted_says_why(name: str, why: str | None) -> None:
+    told = held(name, found())
+    assert told is None if why is None else why in told
 
 
 def test_an_error_that_is_not_finite_is_not_known() -> None:
-    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.09, final_rmse=math.inf)
-    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
-    assert "is not known; the noise is 0.004 V." in summary("unexplained", [], {}, [], fit, "V")
+    assert "is not known; the noise is 0.004 V." in unseen_error(quality_of(final=float("inf")), "V")
+    assert "goes from 0.1 to 0.005 V; the noise is 0.004 V." in unseen_error(quality_of(final=0.005), "V")
 
 
 @pytest.mark.parametrize(
@@ -99,21 +170,16 @@ def test_an_error_that_is_not_finite_is_not_known() -> None:
     ids=["at rest", "moving", "no interval"],
 )
 def test_a_change_is_told_with_the_moments_between_which_it_lies(ends, when) -> None:
-    errors = Errors(nominal_rmse=0.1, recalibrated_rmse=0.01, final_rmse=0.004)
-    fit = FitQuality(noise_floor=0.004, training=errors, validation=errors)
-    preload = BaseParameter(
-        nominal=0.29, value=0.29, unit="N.m", ci95=None, identifiable=True, drifted=True,
-        indistinguishable_from=[["external_load"]],
-    )  # fmt: skip
+    preload = spring(nominal=0.29, value=0.29, indistinguishable_from=[["external_load"]])
     change = Change(parameter="spring_preload", time=31.71, time_ci95=ends, before=0.29, after=0.322)
-    said = summary("parameter_drift", [], {"spring_preload": preload}, [change], fit, "V")
-    assert f"spring preload changes {when} from 0.29 to 0.322, or external load, which fit alike. " in said
+    text = said("parameter_drift", parameters={"spring_preload": preload}, changes=[change])
+    assert f"spring preload changes {when} from 0.29 to 0.322, or external load, which fit alike. " in text
 
 
 def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
     hidden = [NotTestable(id="backlash", why="", record="duty below 0")]
     limit = Limit("slow_sampling", "sampled at 60 Hz")
-    steps = advice("missing_physics", [TIED, TIED], {}, hidden, [limit, limit])
+    steps = advice(found("missing_physics"), [TIED, TIED], {}, hidden, [limit, limit])
     assert steps[0] == limit.record
     assert steps[1].startswith("To tell viscous friction from armature resistance and torque constant: ")
     assert "measure the motor's resistance at standstill" in steps[1] and "`free: false`" in steps[1]
@@ -122,23 +188,15 @@ def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
 
 
 def test_advice_sends_nobody_to_stops_that_are_not_there() -> None:
-    spring = BaseParameter(
-        nominal=0.1, value=0.2, unit="N.m", ci95=None, identifiable=True, drifted=True,
-        indistinguishable_from=[["gravity_torque"]],
-    )  # fmt: skip
-    said = [advice("parameter_drift", [], {"spring_preload": spring}, [], [], stops)[0] for stops in (True, False)]
-    assert "stops" in said[0] and "stops" not in said[1] and "by other means" in said[1]
+    drifted = {"spring_preload": spring(indistinguishable_from=[["gravity_torque"]])}
+    with_stops, without = (
+        advice(found("parameter_drift", actuator=actuator), [], drifted, [], [])[0]
+        for actuator in (PIERBURG, read_actuator("xl330"))
+    )
+    assert "stops" in with_stops and "stops" not in without and "by other means" in without
 
 
 def test_what_decides_nothing_is_said_before_anything_else() -> None:
     still = Limit("no_movement", "The shaft never moves.", decisive=True)
     assert cautioned([still], "All is well.") == "Nothing can be concluded: The shaft never moves. All is well."
     assert cautioned([Limit("short", "5 s only.")], "All is well.") == "All is well."
-
-
-def test_what_would_fit_and_is_not_needed_is_said_and_not_named() -> None:
-    assert needless((), "Something is left.") == "Something is left."
-    one, two = (needless(effects, "Something is left.") for effects in (("external_load",), ("backlash", "sensor_lag")))
-    assert one.startswith("Something is left. External load would explain the remaining error, but so would")
-    assert one.endswith("it is not named.")
-    assert "Backlash, and sensor lag would explain" in two and two.endswith("they are not named.")
