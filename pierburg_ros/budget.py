@@ -11,6 +11,10 @@ SIMULATIONS = 20_000
 """Simulations in a usual effort. Work: twice what two effects beside four drifts took."""
 
 
+class OutOfTime(BaseException):
+    """The seconds of a budget are over: like an interrupt from the keyboard it waits for nothing."""
+
+
 @dataclass(frozen=True)
 class Budget:
     """So many `efforts`, infinite for no limit, and at most so many `seconds` of a clock."""

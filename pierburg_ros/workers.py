@@ -6,8 +6,8 @@ its own threads would fight with ours for the same cores.
 
 from __future__ import annotations
 
-import math
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
@@ -17,12 +17,8 @@ from typing import Any, ParamSpec, TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from pierburg_ros.deadline import Deadline
 from pierburg_ros.errors import InputError
 
-PACE = 1.4
-"""Processor time that work with several jobs takes in a second of an idle machine. Measured: diagnoses on two cores
-took 1.16 to 1.54 (n = 21 practice recordings, median 1.35), those of more than 20 s 1.40 to 1.54 (n = 5)."""
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 Task = Callable[[], None]
@@ -35,11 +31,6 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def pace(jobs: int | None = None) -> float:
-    """Processor time that work with so many `jobs` at a time takes in a second of an idle machine."""
-    return 1.0 if min(checked_jobs(jobs), cores()) == 1 else PACE
-
-
 def one_thread() -> threadpool_limits:
     """While entered, linear algebra keeps to one thread: its arrays are tall and narrow here, and gain nothing by more.
 
@@ -50,17 +41,16 @@ def one_thread() -> threadpool_limits:
 
 
 @contextmanager
-def workers(jobs: int | None = None, deadline: Deadline | None = None) -> Iterator[Executor]:
+def workers(jobs: int | None = None) -> Iterator[Executor]:
     """Threads for `jobs` pieces of work at a time; None: one for each core.
 
         with workers(jobs) as pool:
             fits = list(pool.map(fit, starts))
 
     `map` gives results in the order of its items and raises what a piece of work raised; nothing that waited is
-    begun then. Work that runs in the pool must not wait for other work of the same pool. After the `deadline` what
-    waits for a result gets OutOfTime.
+    begun then. Work that runs in the pool must not wait for other work of the same pool.
     """
-    pool = _Threads(checked_jobs(jobs), deadline or Deadline())
+    pool = _Threads(checked_jobs(jobs))
     try:
         with one_thread():
             yield pool
@@ -84,8 +74,7 @@ class _Threads(Executor):
     Those of `concurrent.futures` keep an interrupted command waiting until the last of them has finished.
     """
 
-    def __init__(self, jobs: int, deadline: Deadline) -> None:
-        self._deadline = deadline
+    def __init__(self, jobs: int) -> None:
         self._tasks: SimpleQueue[tuple[Future[Any], Task] | None] = SimpleQueue()
         self._waiting: set[Future[Any]] = set()
         self._closed = False
@@ -100,21 +89,18 @@ class _Threads(Executor):
         timeout: float | None = None,
         chunksize: int = 1,
     ) -> Iterator[Result]:
-        """Results in the order of the items; OutOfTime where the deadline comes first, TimeoutError after `timeout`."""
-        own = Deadline(timeout)
+        """Results in the order of the items; TimeoutError after `timeout` [s]."""
+        end = None if timeout is None else time.monotonic() + timeout
         futures = [self.submit(fn, *items) for items in zip(*iterables, strict=False)]
-        return self._in_time(futures, own)
+        return self._in_time(futures, end)
 
-    def _in_time(self, futures: Sequence[Future[Result]], own: Deadline) -> Iterator[Result]:
+    def _in_time(self, futures: Sequence[Future[Result]], end: float | None) -> Iterator[Result]:
         """The results one by one; those that are not asked for any more are cancelled."""
         try:
             for future in futures:
-                while not future.done():
-                    left = min(self._deadline.left, own.left)
-                    wait([future], None if math.isinf(left) else left)
-                    self._deadline.check()
-                    if not own.left:
-                        raise TimeoutError
+                wait([future], None if end is None else max(end - time.monotonic(), 0.0))
+                if not future.done():
+                    raise TimeoutError
                 yield future.result()
         finally:
             for future in futures:

@@ -16,8 +16,7 @@ ALLOWED = {
     "kernel": {"kernel_cache"},
     "parameter": {"errors"},
     "processes": {"errors"},
-    "deadline": set(),
-    "workers": {"errors", "deadline"},
+    "workers": {"errors"},
     "version": set(),
     "executors": {"errors", "processes", "version", "workers"},
     "intake": {"errors"},
@@ -31,7 +30,7 @@ ALLOWED = {
 ALLOWED["export"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["monitoring"] = ALLOWED["plant"] | {"plant"}
 ALLOWED["closed_loop"] = ALLOWED["plant"] | {"plant", "control"}
-ALLOWED["inference"] = ALLOWED["plant"] | {"plant", "recording", "budget", "deadline"}
+ALLOWED["inference"] = ALLOWED["plant"] | {"plant", "recording", "budget"}
 ALLOWED["pages"] = {"arrays", "actuators"}
 ALLOWED["comparison"] = ALLOWED["inference"] | {"inference", "pages"}
 ALLOWED["identification"] = ALLOWED["comparison"] | {"comparison"}

@@ -105,3 +105,13 @@ def test_an_interrupt_ends_the_process_while_work_still_runs():
 def test_fewer_than_one_job_is_refused(jobs):
     with pytest.raises(InputError, match=f"jobs is {jobs}; expected 1 or more"), workers(jobs):
         pass
+
+
+def test_results_that_come_too_late_are_not_waited_for():
+    release = threading.Event()
+    with workers(1) as pool:
+        try:
+            with pytest.raises(TimeoutError):
+                list(pool.map(lambda _: release.wait(60.0), range(2), timeout=0.01))
+        finally:
+            release.set()

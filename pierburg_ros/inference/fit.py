@@ -21,8 +21,7 @@ import numpy as np
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
-from pierburg_ros.budget import USUAL_BUDGET, Budget
-from pierburg_ros.deadline import OutOfTime
+from pierburg_ros.budget import USUAL_BUDGET, Budget, OutOfTime
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data, Run

@@ -62,7 +62,7 @@ def with_everything_else(source: Path, target: Path) -> None:
 def test_names_the_effect_and_writes_every_file(recording: Path, tmp_path: Path, capsys) -> None:
     assert run(str(recording), "--output", str(tmp_path / "out")) == 0
     document = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
-    assert document["schema"] == 2
+    assert document["schema"] == 3
     assert document["verdict"] == "missing_physics"
     assert [effect["id"] for effect in document["effects"]] == ["sensor_lag"]
     assert document["fit"]["validation"]["final_rmse"] < 1.1 * 0.003
