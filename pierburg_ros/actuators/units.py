@@ -14,6 +14,8 @@ LINEAR = {
     "N.m/rad": "N/m",
     "N.m/rad^3": "N/m^3",
     "N.m.s/rad": "N.s/m",
+    "N.m.s^2/rad^2": "N.s^2/m^2",
+    "N.m.s^3/rad^3": "N.s^3/m^3",
     "kg.m^2": "kg",
     "rad/V": "m/V",
 }

@@ -10,6 +10,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Direction, Over, RemainingShape, ResidualTorque, TorqueOverTime
+from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.balance import Balance, missing
 from pierburg_ros.inference.fit import Fit
 from pierburg_ros.inference.motion import Motion
@@ -58,10 +59,13 @@ class Lacking:
 
 def lacking(fit: Fit, balance: Balance) -> Lacking:
     """The torque that a `fit` lacks, its parameters as the balance would have them beside its effects."""
-    nominal, actuator = fit.fitter.nominal, fit.fitter.data.actuator
-    names = tuple(name for name in fit.explanation.drifted if "." not in name)
-    values, inside = balanced(balance, nominal, names, fit.values, fit.explanation.effects)
-    basis, _ = projected(inside, nominal, names, values, fit.explanation.effects)
+    nominal, actuator, acting = fit.fitter.nominal, fit.fitter.data.actuator, fit.explanation.effects
+    base = tuple(name for name in fit.explanation.drifted if "." not in name)
+    # what shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them
+    along = [each for each in fit.explanation.variants if EFFECT[each.effect].along and not EFFECT[each.effect].mark]
+    names = (*base, *(f"{each.effect}.{name}" for each in along for name in each.free))
+    values, inside = balanced(balance, nominal, names, fit.values, acting)
+    basis, _ = projected(inside, nominal, names, values, acting)
     scale = np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in inside.motions])
 
     def joined(part: Callable[[Motion], Signal]) -> Signal:
@@ -70,8 +74,8 @@ def lacking(fit: Fit, balance: Balance) -> Lacking:
     # a basis of commands is one of torques where the torque of a command is the same everywhere
     basis = np.linalg.qr(basis * scale[:, np.newaxis])[0] if basis.size else basis
     return Lacking(
-        torque=joined(lambda motion: missing(motion, values, fit.explanation.effects)),
-        own=joined(lambda motion: missing(motion, fit.values, fit.explanation.effects)),
+        torque=joined(lambda motion: missing(motion, values, acting)),
+        own=joined(lambda motion: missing(motion, fit.values, acting)),
         angle=joined(lambda motion: motion.angle if actuator.quantity != "speed" else np.zeros(motion.samples.size)),
         velocity=joined(lambda motion: motion.velocity),
         time=joined(lambda motion: motion.time),

@@ -12,7 +12,7 @@ from pierburg_ros.kernel import kernel
 
 
 def put_in(channels: Channels, values: Mapping[str, float]) -> Channels:
-    """What a magnet shows that the measured samples drag, with its play centred on the first one.
+    """What a magnet shows that the measured samples pull along, with its play centred on the first one.
 
     Exact for every drive, with a sensor of the angle: the play acts after all that moves, and how it ends depends on
     the turning points alone. Those between two samples are missed; noise and steps of the recording below the play are

@@ -63,7 +63,7 @@ def balanced(
     balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str] = ()
 ) -> tuple[dict[str, float], Balance]:
     """Values of the base parameters `names` by the balance beside `effects`, and the balance without outliers."""
-    coordinates, found = Coordinates(tuple(names), nominal, math.inf), {**nominal.values, **values}
+    coordinates, found = Coordinates(tuple(names), nominal, balance.duration), {**nominal.values, **values}
     for _ in range(ROUNDS):
         start = found
 
@@ -155,7 +155,7 @@ def projected(
     balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], acting: Sequence[str]
 ) -> tuple[Signal, Signal]:
     """Orthonormal basis of what base parameters change in the balance, and the residual beside it."""
-    coordinates = Coordinates(tuple(names), nominal, math.inf)
+    coordinates = Coordinates(tuple(names), nominal, balance.duration)
     point = coordinates.point(values)
 
     def residual(at: Signal) -> Signal:

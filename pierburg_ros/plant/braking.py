@@ -11,7 +11,7 @@ def braking(model: Model) -> float:
 
     There is no back-EMF in a current or torque that a controller holds.
     """
-    viscous = float(friction.damping(model.record()[0], 1.0))
+    viscous = float(friction.damping(model.record()[0], 1.0, 0.0)[0])
     if model.actuator.drive != "voltage":
         return viscous
     value = model.values

@@ -18,7 +18,10 @@ WITH_REMAINDER = ("beside", "remainder")
 """One effect beside physics outside the catalogue that leaves ten times the noise, and that physics alone."""
 WITH_GUESSES = ("guesses", "beside_guesses")
 """A description of which four numbers are off, and one effect beside such a one."""
-KINDS = (*CATALOGUE, "consistent", "drift", "change", "two", "outside", *WITH_REMAINDER, *WITH_GUESSES)
+LATER = ("drag",)
+"""Effects that joined the catalogue after the first trials were drawn."""
+FIRST = tuple(effect for effect in CATALOGUE if effect not in LATER)
+KINDS = (*FIRST, "consistent", "drift", "change", "two", "outside", *WITH_REMAINDER, *WITH_GUESSES, *LATER)
 """Trials are drawn by the place of their kind: a new one comes last."""
 BESIDE = tuple(effect for effect in CATALOGUE if effect != "sensor_quantization")
 """Effects that stand beside a remainder or guesses, in turn; steps of the converter are read from the samples."""

@@ -68,7 +68,6 @@ STRENGTHS: dict[str, dict[str, Draw]] = {
     "magnet_fading": {"share": spread(0.06, 0.2), "time_constant": spread(8.0, 30.0)},
     "spring_set": {"torque": spread(0.04, 0.12), "exposure": spread(8.0, 40.0)},
     "hysteretic_spring": {"stiffness": spread(0.2, 1.0), "yield_torque": spread(0.03, 0.08)},
-    "square_drag": {"coefficient": spread(0.002, 0.02)},
     "detent": {"torque": spread(0.03, 0.1), "center": even(0.3, 1.2), "width": spread(0.08, 0.25)},
     "ageing_friction": {"growth": spread(0.04, 0.2), "time_constant": spread(0.5, 5.0)},
 }
@@ -100,6 +99,12 @@ def _direction(random: Random) -> dict[str, float]:
     return {"viscous_difference": viscous if which != 1 else 0.0, "coulomb_difference": dry if which else 0.0}
 
 
+def _drag(random: Random) -> dict[str, float]:
+    quadratic, cubic = spread(0.002, 0.02)(random), spread(0.0003, 0.003)(random)
+    which = random.integers(3)
+    return {"quadratic": quadratic if which != 1 else 0.0, "cubic": cubic if which else 0.0}
+
+
 def _spring(random: Random) -> dict[str, float]:
     if random.random() < 0.5:
         return {"cubic_stiffness": spread(0.015, 0.1)(random)}
@@ -116,6 +121,7 @@ def _load(random: Random) -> dict[str, float]:
 
 
 SPECIAL: dict[str, Callable[[Random], dict[str, float]]] = {
+    "drag": _drag,
     "direction_dependent_friction": _direction,
     "nonlinear_spring": _spring,
     "external_load": _load,

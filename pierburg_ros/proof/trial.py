@@ -9,7 +9,9 @@ from typing import Any
 from pierburg_ros.proof.formulation import NOMINAL
 
 UNITS = {
-    "coefficient": {"viscous_friction": "N.m.s/rad", "square_drag": "N.m.s^2/rad^2"},
+    "coefficient": {"viscous_friction": "N.m.s/rad"},
+    "quadratic": {"": "N.m.s^2/rad^2"},
+    "cubic": {"": "N.m.s^3/rad^3"},
     "stiffness": {"": "N.m/rad"},
     "damping": {"": "N.m.s/rad"},
     "breakaway_torque": {"": "N.m"},

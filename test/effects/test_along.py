@@ -22,6 +22,7 @@ OTHERS = [effect for effect in EFFECTS if effect.along is None and effect.varian
 VALUES = {
     "armature_inductance": {"inductance": 0.1},
     "direction_dependent_friction": {"viscous_difference": 0.1, "coulomb_difference": 0.03},
+    "drag": {"quadratic": 0.05, "cubic": 0.02},
     "external_load": {"torque": 0.05, "amplitude": 0.02, "frequency": 0.4, "phase": 1.0, "start": 5.0, "end": 25.0},
     "gear_compliance": {"stiffness": 0.6, "damping": 0.0},
     "input_delay": {"delay": 0.1},

@@ -12,6 +12,7 @@ from pierburg_ros.intake.bounds import LARGEST
 
 CATALOGUE = {
     "viscous_friction": {"coefficient": "N.m.s/rad"},
+    "drag": {"quadratic": "N.m.s^2/rad^2", "cubic": "N.m.s^3/rad^3"},
     "static_friction": {"breakaway_torque": "N.m", "stribeck_velocity": "rad/s"},
     "presliding": {"stiffness": "N.m/rad", "damping": "N.m.s/rad"},
     "load_dependent_friction": {"coefficient": "1"},

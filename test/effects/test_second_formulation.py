@@ -13,6 +13,7 @@ from pierburg_ros.proof.formulation import simulate_textbook
 NOMINAL = Model.nominal(read_actuator("pierburg"))
 CASES = {
     "viscous_friction": {"coefficient": 0.03},
+    "drag": {"quadratic": 0.01, "cubic": 0.002},
     "static_friction": {"breakaway_torque": 0.25, "stribeck_velocity": 0.1},
     "presliding": {"stiffness": 12.0, "damping": 0.02},
     "load_dependent_friction": {"coefficient": 0.1},
@@ -56,3 +57,12 @@ def test_gear_with_play_and_elastic_teeth_agrees() -> None:
     values = {"gear_compliance.stiffness": 20.0, "gear_compliance.damping": 0.02, "backlash.gap": 0.05}
     ours = simulate(NOMINAL.with_values(values), Inputs(time, duty), time)
     assert np.sqrt(np.mean((ours - simulate_textbook(values, time, duty, time)) ** 2)) < 0.5e-3
+
+
+@pytest.mark.parametrize("gear", ["backlash", "gear_compliance"])
+def test_drag_behind_a_gear_agrees(gear: str) -> None:
+    """A shaft without inertia balances its torques at any moment, those that bend over the velocity too."""
+    time, duty = rich_duty()
+    values = {f"{effect}.{name}": value for effect in (gear, "drag") for name, value in CASES[effect].items()}
+    ours = simulate(NOMINAL.with_values(values), Inputs(time, duty), time)
+    assert np.abs(ours - simulate_textbook(values, time, duty, time)).max() < 0.5e-3

@@ -32,6 +32,11 @@ def _spot(angle: float) -> float:
 CASES = (
     Case("viscous_friction", {"coefficient": 0.03}, Valve(viscous=lambda direction: 0.03)),
     Case(
+        "drag",
+        {"quadratic": 0.01, "cubic": 0.002},
+        Valve(load=lambda t, a, w: spring(t, a, w) + 0.01 * w * abs(w) + 0.002 * w**3),
+    ),
+    Case(
         "static_friction",
         {"breakaway_torque": 0.27, "stribeck_velocity": 0.1},
         Valve(level=lambda a, w, d, m: COULOMB + (0.27 - COULOMB) * math.exp(-((w / 0.1) ** 2))),

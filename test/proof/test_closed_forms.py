@@ -306,7 +306,7 @@ def test_relaxation_ends_on_the_plain_spring():
 def test_a_square_drag_slows_a_free_fall_as_its_solution_says():
     """Without spring force, friction and motor, constant push: J w' = T - c w^2, soon w = sqrt(T / c)."""
     time = times(0.4)
-    values = {"square_drag.coefficient": 0.02, "coulomb_friction": 0.0, "spring_stiffness": 1e-9}
+    values = {"drag.quadratic": 0.02, "coulomb_friction": 0.0, "spring_stiffness": 1e-9}
     found = angle(values, time, np.zeros(time.size), initial_angle=1.5, enabled=np.zeros(time.size))
     speed = np.sqrt(PRELOAD / 0.02)
     settling = NOMINAL["total_inertia"] * asinh(1.0) / (0.02 * speed)

@@ -13,6 +13,7 @@ ACTING = {
     "external_load": {"torque": 0.05, "amplitude": 0.03, "frequency": 2.0, "phase": 0.3, "start": 1.0, "end": 3.0},
     "stop_compliance": {"stiffness": 30.0, "damping": 0.01},
     "viscous_friction": {"coefficient": 0.03},
+    "drag": {"quadratic": 0.01, "cubic": 0.002},
     "static_friction": {"breakaway_torque": 0.27, "stribeck_velocity": 0.1},
     "load_dependent_friction": {"coefficient": 0.1},
     "direction_dependent_friction": {"viscous_difference": 0.03, "coulomb_difference": 0.03},

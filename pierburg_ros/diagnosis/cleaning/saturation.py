@@ -15,6 +15,12 @@ noise two successive readings are equal with probability of about 0.5."""
 CHANCE = 1e-6
 """Probability below which a run of equal readings is not chance, over a whole recording, but the converter's end.
 Chosen: one recording in a million; not varied."""
+BEFORE = 8
+"""Samples over which a rate is taken, twice in a row. Chosen: enough that their mean is no noise, few enough to be a
+moment."""
+KEPT = 0.67
+"""Share of a rate that is kept by what is cut off. Derived: where a shaft turns its rate falls to a third from one
+stretch of equal length to the next, and what is cut off keeps all; this is half way."""
 BESIDE = 4.0
 """Distance from the end within which readings are left out too, in standard deviations of the noise: there one side of
 the noise is cut off. Derived: white noise goes further with probability 3e-5."""
@@ -23,7 +29,8 @@ the noise is cut off. Derived: white noise goes further with probability 3e-5.""
 def saturated(time: Signal, measured: Signal) -> Flags:
     """Which samples stand at the end of the converter's range, or so near that noise decides, shape (samples,).
 
-    The end is the highest or lowest value, if it repeats in a row far longer than noise repeats any other.
+    The end is the highest or lowest value, if it repeats in a row far longer than noise repeats any other, and the
+    reading comes to it or leaves it without slowing down: a shaft that dwells where it turns slows down before.
     """
     values, noise = np.unique(measured), noise_of(time, measured)
     found = np.zeros(measured.size, dtype=bool)
@@ -31,7 +38,9 @@ def saturated(time: Signal, measured: Signal) -> Flags:
         return found
     same = np.diff(measured) == 0.0
     for end in (values[0], values[-1]):
-        if _longest(measured == end) >= _by_chance(same[measured[1:] != end], measured.size):
+        runs = _runs(measured == end)
+        longest = max(runs, key=lambda run: run[1] - run[0])
+        if longest[1] - longest[0] >= _by_chance(same[measured[1:] != end], measured.size) and _cut(measured, longest):
             found |= np.abs(measured - end) <= BESIDE * noise
     return found
 
@@ -42,7 +51,18 @@ def _by_chance(same: Flags, size: int) -> float:
     return 1.0 + math.log(CHANCE / size) / math.log(share)
 
 
-def _longest(flags: Flags) -> int:
-    """Most flags in a row."""
+def _runs(flags: Flags) -> list[tuple[int, int]]:
+    """First flag and the place after the last one of each row of flags."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
-    return int(np.max(edges[1::2] - edges[::2], initial=0))
+    return [(int(first), int(last)) for first, last in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _cut(measured: Signal, run: tuple[int, int]) -> bool:
+    """Whether the reading keeps its rate up to a run of equal readings, or has it at once after."""
+    sides = (measured[: run[0] + 1][::-1], measured[run[1] - 1 :])
+    for side in sides:
+        if side.size > 2 * BEFORE:
+            near, far = abs(side[BEFORE] - side[0]), abs(side[2 * BEFORE] - side[BEFORE])
+            if near >= KEPT * far > 0.0:
+                return True
+    return False

@@ -80,11 +80,12 @@ def friction_torque(model: Model, velocity: Signal, angle: float) -> Signal:
         if math.isnan(speed):
             continue
         side = math.copysign(1.0, speed) if speed != 0.0 else (1.0 if index > middle else -1.0)
-        weight, drag = load.load_at(record, angle, 0.0, 0.0), friction.damping(record, side) * speed
+        weight = load.load_at(record, angle, 0.0, 0.0)
+        viscous = friction.damping(record, side, speed)[0] * speed
         level = 0.0
         for _ in range(8):  # the level may depend on the motor torque, which includes it
-            level = friction.level(record, side, speed, angle, weight + drag + side * level)[0]
-        result[index] = side * level + drag
+            level = friction.level(record, side, speed, angle, weight + viscous + side * level)[0]
+        result[index] = side * level + viscous
     return result
 
 

@@ -62,7 +62,9 @@ def resistance(p, s, angle, velocity, bristle, time, motor):
     own = own_share(p)
     torque, stiffness, by_velocity, _ = load(p, angle, velocity, outside(p, s, time))
     friction, by_speed, by_angle, _ = level(p, s.direction, velocity, angle, motor)
-    resisting = own * damping(p, s.direction)
+    over, by_drag = damping(p, s.direction, velocity)
+    resisting = own * by_drag
+    torque += own * (over - by_drag) * velocity
     if leans(p, friction):
         free = own * presliding.freedom(p.presliding, bristle, friction, s.direction)
         torque += own * p.presliding.stiffness * bristle
@@ -104,7 +106,8 @@ def _bends(p, angle):
     """Whether what resists the shaft is no straight line of its velocity."""
     touches = p.stop_compliance.stiffness != 0.0 and (angle < p.lower_stop or angle > p.upper_stop)
     falls = p.static_friction.breakaway_torque != 0.0 and p.presliding.stiffness == 0.0
-    return touches or falls or p.residual.velocities > 1
+    grows = p.drag.quadratic != 0.0 or p.drag.cubic != 0.0
+    return touches or falls or grows or p.residual.velocities > 1
 
 
 @kernel

@@ -73,7 +73,8 @@ def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
     friction = by_velocity = by_angle = by_torque = 0.0
     if part > 0.0:
         friction, by_velocity, by_angle, by_torque = level(p, direction, velocity, angle, motor)
-    viscous = part * damping(p, direction)
+    over, by_speed = damping(p, direction, velocity)
+    viscous, steeper = part * over, part * by_speed
     pulled = stiffness = by_load_velocity = rate = 0.0
     if kind == JOINED:
         pulled, stiffness, by_load_velocity, rate = load(p, angle, velocity, outside(p, s, time))
@@ -84,13 +85,13 @@ def balance(p, s, kind, angle, velocity, direction, time, amperes, bristle):
     if leans(p, friction):
         held, viscous_too, by_path, by_level = presliding.bearing(p.presliding, bristle, friction, direction, velocity)
         force = motor - pulled - part * held - (part * viscous_too + viscous) * velocity
-        viscous += part * (viscous_too + by_level * by_velocity)
+        steeper += part * (viscous_too + by_level * by_velocity)
         stiffness += part * (by_path + by_level * by_angle)
         gain = 1.0 - part * by_level * by_torque
-        return Line(force, electrical_slope(p, s) * gain + viscous + by_load_velocity, stiffness, -rate, gain)
+        return Line(force, electrical_slope(p, s) * gain + steeper + by_load_velocity, stiffness, -rate, gain)
     gain = 1.0 - direction * part * by_torque
     force = motor - pulled - part * direction * friction - viscous * velocity
-    slope = electrical_slope(p, s) * gain + by_load_velocity + viscous + part * direction * by_velocity
+    slope = electrical_slope(p, s) * gain + by_load_velocity + steeper + part * direction * by_velocity
     return Line(force, slope, stiffness + part * direction * by_angle, -rate, gain)
 
 

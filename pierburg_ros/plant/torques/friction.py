@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pierburg_ros.effects import (
     direction_dependent_friction,
+    drag,
     load_dependent_friction,
     position_dependent_friction,
     static_friction,
@@ -23,11 +24,17 @@ make. It would change its lean within any step, and be no number where the frict
 
 
 @kernel
-def damping(p, direction):
-    """Viscous friction [N.m.s/rad] in `direction` (+1 opens, -1 closes)."""
-    return viscous_friction.damping(p.viscous_friction) + direction_dependent_friction.damping(
-        p.direction_dependent_friction, direction
-    )
+def damping(p, direction, velocity):
+    """What resists the `velocity` [rad/s] in `direction` (+1 opens, -1 closes) beyond the friction level.
+
+    Torque over velocity, and its derivative with velocity [N.m.s/rad]: the same where it is a straight line.
+    """
+    viscous = viscous_friction.damping(p.viscous_friction)
+    viscous += direction_dependent_friction.damping(p.direction_dependent_friction, direction)
+    if p.plain:
+        return viscous, viscous
+    over, slope = drag.damping(p.drag, velocity)
+    return viscous + over, viscous + slope
 
 
 @kernel

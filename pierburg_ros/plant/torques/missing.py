@@ -20,6 +20,6 @@ def missing(p, motor, time, angle, velocity, acceleration):
         direction = np.sign(velocity[i])
         known = load_at(p, angle[i], velocity[i], time[i]) + ripple(p, angle[i])
         friction = direction * level(p, direction, velocity[i], angle[i], motor[i])[0]
-        resisting = friction + damping(p, direction) * velocity[i]
+        resisting = friction + damping(p, direction, velocity[i])[0] * velocity[i]
         torque[i] = motor[i] - known - resisting - p.total_inertia * acceleration[i]
     return torque

@@ -42,7 +42,7 @@ def stribeck(velocity: float, scale: float) -> float:
 
 @kernel
 def solve(push: float, damping: float, dry: float, share: float, p: Any) -> float:
-    """Velocity w with damping w + viscous(w) + dry(w) = push [rad/s]; 0 where the dry part holds the push.
+    """Velocity w with damping w + viscous(w) + drag(w) + dry(w) = push [rad/s]; 0 where the dry part holds the push.
 
     A side that carries `share` of all friction has that share of the viscous and directional terms too.
     """
@@ -51,11 +51,31 @@ def solve(push: float, damping: float, dry: float, share: float, p: Any) -> floa
         closing += share * p.direction_dependent_friction.coulomb_difference
     damping += share * p.viscous_friction.coefficient
     if push > dry:
-        return (push - dry) / damping
+        return sliding(push - dry, damping, share, p)
     if push < -closing:
         damping += share * p.direction_dependent_friction.viscous_difference
-        return (push + closing) / damping
+        return -sliding(-push - closing, damping, share, p)
     return 0.0
+
+
+@kernel
+def sliding(push: float, damping: float, share: float, p: Any) -> float:
+    """Speed w [rad/s] with damping w + share (quadratic w^2 + cubic w^3) = push, by tangents from above."""
+    quadratic, cubic = share * p.drag.quadratic, share * p.drag.cubic
+    speed: float = push / damping
+    if quadratic == 0.0 and cubic == 0.0:
+        return speed
+    if quadratic > 0.0:
+        speed = min(speed, (push / quadratic) ** 0.5)
+    if cubic > 0.0:
+        speed = min(speed, (push / cubic) ** (1.0 / 3.0))
+    for _ in range(30):
+        left = ((cubic * speed + quadratic) * speed + damping) * speed - push
+        change = left / ((3.0 * cubic * speed + 2.0 * quadratic) * speed + damping)
+        speed -= change
+        if change <= 1e-14 * speed:
+            break
+    return speed
 
 
 @kernel

@@ -57,13 +57,6 @@ def detent(angle: float, p: Any) -> float:
 
 
 @kernel
-def drag(velocity: float, p: Any) -> float:
-    """Slope of the square-law drag outside the catalogue [N.m.s/rad]: torque coefficient abs(w) w."""
-    slope: float = p.square_drag.coefficient * abs(velocity)
-    return slope
-
-
-@kernel
 def stop(state: Any, p: Any, h: float) -> tuple[float, float]:
     """Compliant stops at the end of the step as (a, b): torque a + b w [N.m], [N.m.s/rad], one-sided."""
     stiffness = p.stop_compliance.stiffness

@@ -10,7 +10,7 @@ from typing import Any
 
 from pierburg_ros.kernel import kernel
 from pierburg_ros.proof.formulation.friction import bristle, level, resistance, solve
-from pierburg_ros.proof.formulation.loads import UPPER_STOP, cogging, detent, drag, external, spring, stop
+from pierburg_ros.proof.formulation.loads import UPPER_STOP, cogging, detent, external, spring, stop
 
 TOUCHING = 1e-12  # rad, flanks nearer than this are in contact
 
@@ -43,7 +43,7 @@ def shaft_load(state: Any, p: Any, h: float) -> tuple[float, float]:
     """All that closes the shaft but friction and motor, as (a, b): a + b w [N.m], [N.m.s/rad]."""
     stopping, stop_slope = stop(state, p, h)
     torque = spring(state, p) + external(state.time, p) + detent(state.angle, p) + stopping
-    return torque, h * p.spring_stiffness + drag(state.velocity, p) + stop_slope
+    return torque, h * p.spring_stiffness + stop_slope
 
 
 @kernel

@@ -27,6 +27,7 @@ NOMINAL: dict[str, float] = {
 
 CATALOGUE: dict[str, tuple[str, ...]] = {
     "viscous_friction": ("coefficient",),
+    "drag": ("quadratic", "cubic"),
     "static_friction": ("breakaway_torque", "stribeck_velocity"),
     "presliding": ("stiffness", "damping"),
     "load_dependent_friction": ("coefficient",),
@@ -54,7 +55,6 @@ OUTSIDE: dict[str, tuple[str, ...]] = {
     "magnet_fading": ("share", "time_constant"),  # 1, s: torque constant falls by `share` as the magnets warm
     "spring_set": ("torque", "exposure"),  # N.m, rad.s: preload lost while the spring is held open
     "hysteretic_spring": ("stiffness", "yield_torque"),  # N.m/rad, N.m: rate-free hysteresis
-    "square_drag": ("coefficient",),  # N.m.s^2/rad^2: torque coefficient w abs(w)
     "detent": ("torque", "center", "width"),  # N.m, rad, rad: a magnetic notch that pulls to its centre
     "ageing_friction": ("growth", "time_constant"),  # 1, s: dry friction grows by `growth` while the shaft rests
 }
@@ -65,6 +65,7 @@ RECORD = np.dtype(
     + [(name, [(field, np.float64) for field in fields]) for name, fields in EFFECTS.items()]
 )
 STRENGTHS = {
+    "drag": ("quadratic", "cubic"),
     "direction_dependent_friction": ("viscous_difference", "coulomb_difference"),
     "nonlinear_spring": ("cubic_stiffness", "knee_stiffness"),
     "external_load": ("torque", "amplitude"),
