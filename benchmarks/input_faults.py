@@ -399,22 +399,22 @@ A wrong unit, sign, clock or signal is found before anything is searched for. Th
 There is one test. Along the measured motion the motor's torque must equal load, friction and inertia. Numbers are
 free within a factor of 10 and every known effect may act, but no friction drives and no shaft is beyond its stops. A
 recording of which that leaves at most 5 % of the command's variation is what it is read as. Otherwise each fault of a
-table is undone in turn. One is told where less than 5 % and a fifth is left then. Where nothing mends the recording,
-physics is missing: nothing is said, and the diagnosis goes on.
+table is undone in turn. One is reported where less than 5 % and a fifth is left then. Where nothing mends the
+recording, physics is missing: nothing is said, and the diagnosis goes on.
 
-Where a fault is told, `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the final line of
-the signal map, what is written there already included. `--force` goes on. With `exact: true` in the signal map, or
+Where a fault is reported, `diagnose` concludes nothing: `diagnosis.json` has `input_faults`, each with the final line
+of the signal map, what is written there already included. `--force` goes on. With `exact: true` in the signal map, or
 `--exact duty`, a signal is not doubted, only its stamps.
 
-## Faults that are told
+## Faults that are reported
 
 {found} of {tried}, made of practice recordings (valve) and of the XL330 (bench).
 
 """
 CLEAN = """
-What is not told is mostly small or tied: a stamp that is late by less than the filter, a small clock error, a scale or
-zero that equals a drift. No line of a signal map mends the duty of another run, one run backwards, or one without its
-sign; nor are two actuators told apart.
+What is not reported is mostly small or tied: a stamp that is late by less than the filter, a small clock error, a
+scale or zero that equals a drift. No line of a signal map mends the duty of another run, one run backwards, or one
+without its sign; nor are two actuators distinguished.
 
 ## Clean recordings
 

@@ -10,7 +10,7 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.inference.data import FIRST, run_of
+from pierburg_ros.inference.data import FIRST, refuse_others, run_of
 from pierburg_ros.inference.fit import beginning, inertia_time, rungs
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import angle_per_unit, decoded
@@ -82,6 +82,7 @@ def resimulated(model: Model, recording: Recording) -> tuple[Recording, Signal]:
 
     InputError where none can be simulated.
     """
+    refuse_others(recording, model.actuator)
     parts = parts_of(recording, model.actuator)
     simulated = np.concatenate([_simulated(model, part) for part in parts])
     time, measured = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "measured"))

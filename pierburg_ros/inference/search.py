@@ -168,7 +168,7 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
 
 
 def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
-    """The best promises of so many `effects` each, these in the order of their best, without what promises little."""
+    """The best promises of each of so many `effects`, in the order of their best, but for what promises little."""
     groups: dict[str, list[Promise]] = {}
     for promise in promised:
         if promise.fall < PROMISING * promised[0].fall:

@@ -18,7 +18,7 @@ Chosen: one recording in a million; not varied."""
 BEFORE = 8
 """Samples over which a rate is taken, twice in a row. Chosen: enough that their mean is no noise, few enough to be a
 moment."""
-KEPT_RATE = 0.67
+CUT_OFF = 0.67
 """Share of a rate that is kept by what is cut off. Derived: where a shaft turns its rate falls to a third from one
 stretch of equal length to the next, and what is cut off keeps all; this is half way."""
 BESIDE = 4.0
@@ -63,6 +63,6 @@ def _cut(measured: Signal, run: tuple[int, int]) -> bool:
     for side in sides:
         if side.size > 2 * BEFORE:
             near, far = abs(side[BEFORE] - side[0]), abs(side[2 * BEFORE] - side[BEFORE])
-            if near >= KEPT_RATE * far > 0.0:
+            if near >= CUT_OFF * far > 0.0:
                 return True
     return False

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.motion import Motion
-from pierburg_ros.diagnosis.schema import Location
+from pierburg_ros.diagnosis.schema import Direction, Location
 
 LONG = 10.5
 """Length from which a window is described by its beginning and its range of motion, in the actuator's own time. Chosen:
@@ -23,6 +23,10 @@ PLACE = 0.09
 a word."""
 PRESSING = 0.01
 """Share of a large input from which the motor presses against a stop. Chosen: it decides a word."""
+
+ONE_DIRECTION = 0.8
+"""Share of the energy in a window that must be in movements of one direction for the window to have it. Chosen: four
+times as much as in the other."""
 
 
 def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, float]]) -> list[Location]:
@@ -37,8 +41,18 @@ def locations(motion: Motion, residual: Signal, windows: Sequence[tuple[float, f
         inside = _samples(motion, start, end)
         share = float(residual[inside] @ residual[inside]) / total if total > 0.0 else 0.0
         regime = doing(motion, start, end) + (", late in the recording" if late else "")
-        found.append(Location(start=start, end=end, share=share, regime=regime))
+        way = direction(motion.velocity[inside] * motion.moving[inside], residual[inside])
+        found.append(Location(start=start, end=end, share=share, regime=regime, direction=way))
     return found
+
+
+def direction(velocity: Signal, residual: Signal) -> Direction:
+    """In which direction the shaft moves where the energy of a residual is; `velocity` is 0 where it stands."""
+    energy = np.square(residual)
+    ways = [float(np.sum(energy[sign * velocity > 0.0])) for sign in (1.0, -1.0)]
+    if ways[0] > ONE_DIRECTION * sum(ways):
+        return "positive"
+    return "negative" if ways[1] > ONE_DIRECTION * sum(ways) else "both"
 
 
 def doing(motion: Motion, start: float, end: float) -> str:

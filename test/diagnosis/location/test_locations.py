@@ -44,6 +44,15 @@ def test_shares_are_of_all_energy():
     assert (found[0].start, found[0].end) == (2.0, 3.0)
 
 
+@pytest.mark.parametrize(
+    ("window", "way"), [((2.1, 2.9), "positive"), ((5.1, 5.9), "negative"), ((2.1, 5.9), "both"), ((3.5, 4.5), "both")]
+)
+def test_a_window_has_the_direction_in_which_the_shaft_moves_in_it(window, way):
+    motion = drawn()
+    (found,) = locations(motion, np.ones(motion.time.size), [window])
+    assert found.direction == way
+
+
 def test_windows_that_are_all_late_are_called_late():
     motion = drawn(corners=CORNERS)
     found = locations(motion, np.ones(motion.time.size), [(7.0, 7.2), (8.0, 8.4)])
