@@ -23,6 +23,7 @@ from pierburg_ros.inference.evidence import SIGNIFICANT, TIED, certainty, probab
 from pierburg_ros.inference.explanation import Explanation, id_of, without
 from pierburg_ros.inference.explanation import quantities as quantities_of
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, rms_of
+from pierburg_ros.inference.polish import polished
 from pierburg_ros.inference.search import DEEPEST, key
 from pierburg_ros.inference.shortlist import DEPENDENT
 
@@ -105,7 +106,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
         everything = [described, *fits]
         best = min((fit for fit in fits if sure(fit, everything)), key=lambda fit: fit.chi2)
     score = Score.of([best, *everything])
-    handed = last.fit(best.explanation, best.values)
+    handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
         chosen=best,

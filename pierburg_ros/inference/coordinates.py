@@ -49,7 +49,8 @@ class Axis:
 
     def value(self, coordinate: float) -> float:
         """The value at a coordinate."""
-        value = self.scale * (math.exp(coordinate) if self.logarithmic else coordinate)
+        # an end of a wide interval may lie where exponentials are no numbers any more
+        value = self.scale * (math.exp(min(coordinate, 700.0)) if self.logarithmic else coordinate)
         return min(max(value, self.minimum), self.maximum)
 
     def coordinate(self, value: float) -> float:

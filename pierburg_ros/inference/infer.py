@@ -62,7 +62,7 @@ def infer(
     fitter = Fitter(data, nominal, first, effort)
     with workers(jobs) as pool:
         base = tuple(name for name in free if "." not in name)
-        search = Search(balance, independent(balance, nominal, base), span, pool, tell)
+        search = Search(balance, independent(fitter, balance, base), span, pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool)
         if len(choice.chosen.explanation.drifted) > 1 and adequate(choice.chosen):

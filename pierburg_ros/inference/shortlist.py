@@ -22,8 +22,9 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data
-from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.explanation import Explanation, Variant
+from pierburg_ros.inference.fit import Fit, Fitter
+from pierburg_ros.inference.intervals import slopes_at
 from pierburg_ros.inference.least_squares import jacobian, minimise
 from pierburg_ros.plant import Model
 
@@ -76,27 +77,38 @@ def balanced(
     return found, balance
 
 
-def independent(balance: Balance, nominal: Model, names: Sequence[str]) -> tuple[str, ...]:
-    """Those of the base parameters `names` that the balance tells from the ones before them.
+def independent(fitter: Fitter, balance: Balance, names: Sequence[str]) -> tuple[str, ...]:
+    """Those of the base parameters `names` that the recordings tell from the others, in their order.
 
-    Of quantities of which only a ratio shows the last is held: what scales with the others stays as described.
+    First come those that the balance tells from the ones before them, then what only a simulation shows, as the zero of
+    a sensor. Of quantities of which only a ratio shows the last is held: what scales with the others stays as it is.
     """
-    coordinates = Coordinates(tuple(names), nominal, math.inf)
+    nominal = fitter.nominal
+    coordinates = Coordinates(tuple(names), nominal, balance.duration)
     point = coordinates.point(nominal.values)
 
     def residual(at: Signal) -> Signal:
         return balance.residual({**nominal.values, **coordinates.values(at)}, ())
 
     slopes = jacobian(residual, point, residual(point), *coordinates.bounds, coordinates.steps)
+    moving = [names[place] for place in telling(slopes)]
+    ordered = (*moving, *(name for name in names if name not in moving))
+    simulated = slopes_at(fitter.fit(Explanation(), nominal.values, 0), Explanation(ordered))
+    kept = [ordered[place] for place in telling(simulated)]
+    return tuple(name for name in names if name in kept)
+
+
+def telling(slopes: Signal) -> list[int]:
+    """The columns of `slopes`, shape (samples, names), that are no combination of the ones before them."""
     kept: list[int] = []
-    for place in range(len(names)):
+    for place in range(slopes.shape[1]):
         column = slopes[:, place]
         if kept:
             basis = np.linalg.qr(slopes[:, kept])[0]
             column = column - basis @ (basis.T @ column)
         if np.linalg.norm(column) > DEPENDENT * np.linalg.norm(slopes[:, place]):
             kept.append(place)
-    return tuple(names[place] for place in kept)
+    return kept
 
 
 DEPENDENT = 1e-3

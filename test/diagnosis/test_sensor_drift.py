@@ -36,7 +36,6 @@ def recorded(nominal: Model, changes: dict[str, float]) -> Recording:
 
 
 @pytest.mark.search
-@pytest.mark.xfail(strict=True, reason="numbers of the sensor are no drifts of the balance, and give in the stops wins")
 @pytest.mark.parametrize(
     ("changes", "effects", "drifted"),
     (

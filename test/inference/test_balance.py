@@ -9,7 +9,7 @@ from support.recordings import NOMINAL, recording
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.data import data_of
-from pierburg_ros.inference.fit import ladder
+from pierburg_ros.inference.fit import Fitter, ladder
 from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.search import free_parameters
 from pierburg_ros.inference.shortlist import balanced, independent
@@ -34,9 +34,11 @@ def test_it_gives_back_base_parameters(drifted: Balance):
     assert 0.8 * drifted.size < inside.size <= drifted.size
 
 
-def test_what_only_a_ratio_shows_is_held(drifted: Balance):
+def test_what_only_a_ratio_shows_is_held():
     # four lumps for six parameters (docs/signals.md): R and k_m, spring and friction, but for one torque and the supply
-    names = independent(drifted, NOMINAL, free_parameters(NOMINAL))
+    data = data_of([recording(TRUE)], NOMINAL)
+    fitter = Fitter(data, NOMINAL, ladder(data)[0])
+    names = independent(fitter, balance_of(recording(TRUE)), free_parameters(NOMINAL))
     assert len(names) == 4
     assert "supply_voltage" not in names
 

@@ -60,7 +60,7 @@ def visibility(recording: Recording, model: Model, changed: Model, name: str) ->
     nearest = min(put_in.fit(Explanation((drift,)), model.values, BRIEF).chi2 for drift in drifts)
     remains = fitter.fit(Explanation(), model.values, 0)
     balance = Balance(data.actuator, tuple(motion_of(run, model, ladder(data)[0]) for run in data.runs))
-    told = independent(balance, model, drifts)
+    told = independent(fitter.pulled(ladder(data)[0]), balance, drifts)
     distance = nearest / max(remains.ratio**2 * remains.repetition, 1.0)
     return Visibility(distance, _left(put_in, told), _left(fitter, told))
 
