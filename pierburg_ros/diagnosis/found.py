@@ -14,7 +14,7 @@ from pierburg_ros.effects import ROUNDING, STEP
 from pierburg_ros.inference.choice import Choice, strongest
 from pierburg_ros.inference.data import Data, Run
 from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, rms_of
+from pierburg_ros.inference.fit import Fit, Fitter, excess, rms_of
 from pierburg_ros.inference.infer import Inferred
 from pierburg_ros.inference.intervals import Interval, intervals
 from pierburg_ros.inference.least_squares import FULL
@@ -113,7 +113,7 @@ def found(inferred: Inferred, pool: Executor) -> Found:
     whole = with_all_drifts(inferred)
     at = lacking(whole, inferred.balance)
     written = choice.predictor
-    if not adequate(choice.chosen):
+    if not choice.explained:
         mapped = shaped(written, lacking(written, inferred.balance))
         held_out = written.fitter.data.validation
         if mapped is not None and rms_of(mapped, held_out) < rms_of(written, held_out):
@@ -148,7 +148,7 @@ def with_all_drifts(inferred: Inferred) -> Fit:
     own = replace(chosen.explanation, drifted=tuple(name for name in drifts if name != chosen.explanation.changed))
     same = [fit for fit in choice.fits if key(fit) == key(chosen) and set(fit.explanation.drifted) == set(own.drifted)]
     start = same[0] if same else chosen
-    fitter = chosen.fitter if adequate(chosen) else strongest(chosen.fitter)
+    fitter = chosen.fitter if choice.explained else strongest(chosen.fitter)
     return fitter.fit(own, start.values, FULL)
 
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.inference.evidence import SIGNIFICANT, TIED, certainty, probability
-from pierburg_ros.inference.explanation import Explanation, id_of, without
+from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, TIED, certainty, probability
+from pierburg_ros.inference.explanation import Explanation, id_of, jumps, without
 from pierburg_ros.inference.explanation import quantities as quantities_of
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, rms_of
 from pierburg_ros.inference.polish import polished
@@ -57,13 +57,14 @@ class Name:
 class Choice:
     """The chosen explanation, and the model that is handed out.
 
-    `chosen` is judged with the pull of its fitter, `handed` is the same explanation with the weakest pull. `ties` are
-    alternatives to each of its quantities, by effect id or parameter name. `names` holds its effects by id, and
+    `explained`: it leaves only noise. `chosen` is judged with the pull of its fitter, `handed` is the same explanation
+    with the weakest pull. `ties` are alternatives to each of its quantities, by effect id or parameter name. `names` holds its effects by id, and
     `doubted` those of other explanations that gain something. All other fits have the weakest pull: `predictor` is the
     one of them that predicts held-out samples best, `described` and `estimated` (all parameters again, no effect)
     included.
     """
 
+    explained: bool
     chosen: Fit
     handed: Fit
     predictor: Fit
@@ -77,7 +78,7 @@ class Choice:
     @property
     def verdict(self) -> Verdict:
         """What the chosen explanation amounts to."""
-        if not adequate(self.chosen):
+        if not self.explained:
             return "unexplained"
         if self.chosen.explanation.variants:
             return "missing_physics"
@@ -90,15 +91,18 @@ Verdict = Literal["consistent", "parameter_drift", "missing_physics", "unexplain
 def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Choice:
     """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
 
-    Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least. Where
-    none does there either, the best explanation counts whose effects all are sure enough, with all drifts.
+    Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
+    slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, the
+    best explanation counts whose effects all are sure enough, with all drifts.
     """
     weakest, last = tuple(fits), fits[0].fitter
-    if not any(map(adequate, fits)):
+    explained = any(map(adequate, fits))
+    if not explained:
         fits = list(pool.map(lambda fit: strongest(fit.fitter).fit(fit.explanation, fit.values), fits))
+        explained = any(adequate(fit) and jumps(fit.explanation) for fit in fits)
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
-    if any(map(adequate, (described, *fits))):
+    if explained:
         smaller = [described, *fewest([described, *fits], parameters, pool)]
         best, dropped = needed(min((*smaller, *fits), key=Score.of([*smaller, *fits])), pool)
         everything = [*smaller, *fits, *dropped, *in_place(best, fits, parameters, pool)]
@@ -109,14 +113,15 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
+        explained=explained and adequate(best),
         chosen=best,
         handed=handed,
         predictor=predictor(handed, (handed, *known)),
         described=known[0],
         estimated=next(fit for fit in weakest if bare(fit)),
         fits=(handed, *known),
-        names={effect: name_of(effect, best, everything) for effect in best.explanation.effects},
-        doubted=doubted(best, everything),
+        names={effect: name_of(effect, best, everything, explained) for effect in best.explanation.effects},
+        doubted=doubted(best, everything, explained),
         ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )
 
@@ -293,11 +298,14 @@ def least(name: str) -> float:
     return NAMED_BY_TIME if name not in EFFECT or EFFECT[name].dated else NAMED
 
 
-def name_of(name: str, best: Fit, fits: Sequence[Fit]) -> Name:
-    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that add no more."""
+def name_of(name: str, best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
+    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that add no more.
+
+    What explains all takes the whole error, whatever others leave.
+    """
     others = (fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best)))
     rival = min(others, key=lambda fit: fit.chi2)
-    share = 1.0 if adequate(best) else taken(rival, best)
+    share = 1.0 if explained else taken(rival, best)
     return Name(better(rival, best) * share, best, rival)
 
 
@@ -309,18 +317,23 @@ def better(worse: Fit, fit: Fit) -> float:
 
 
 def taken(worse: Fit, fit: Fit) -> float:
-    """The share of what the `worse` fit leaves above the noise that another does not leave, 0 to 1."""
+    """The share of what the `worse` fit leaves above the noise that another does not leave, 0 to 1.
+
+    Nothing of an error that is not distinguished from the noise.
+    """
     before, after = excess(worse), excess(fit)
-    return min(max(1.0 - after / before, 0.0), 1.0) if before > 0.0 else 0.0
+    if before <= 0.0 or worse.ratio < EXPLAINED:
+        return 0.0
+    return min(max(1.0 - after / before, 0.0), 1.0)
 
 
-def doubted(best: Fit, fits: Sequence[Fit]) -> dict[str, Name]:
+def doubted(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
     """Effects that are not chosen and leave less than what the chosen explanation or less has, the surest first."""
     found: dict[str, Name] = {}
     for fit in fits:
         for effect in set(fit.explanation.effects) - set(best.explanation.effects):
             name = name_of(effect, fit, fits)
-            if adequate(best):
+            if explained:
                 # the chosen one explains all, so what is left to others is the chance that it is the worse one
                 name = replace(name, confidence=1.0 - better(fit, best), rival=best)
             if name.confidence > (found[effect].confidence if effect in found else 0.0):

@@ -13,7 +13,7 @@ from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.choice import Choice, chosen
 from pierburg_ros.inference.data import data_of
 from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Effort, Fitter, adequate, ladder
+from pierburg_ros.inference.fit import Effort, Fitter, ladder
 from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.search import Progress, Search, aliases, free_parameters, key, searched
 from pierburg_ros.inference.shortlist import Span, forms, independent
@@ -65,7 +65,7 @@ def infer(
         search = Search(balance, independent(fitter, balance, base), span, pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool)
-        if len(choice.chosen.explanation.drifted) > 1 and adequate(choice.chosen):
+        if len(choice.chosen.explanation.drifted) > 1 and choice.explained:
             own = next(fit for fit in fits if key(fit) == key(choice.chosen))
             choice = chosen([*fits, *aliases(own, search)], free, pool)
     return Inferred(choice, balance, forms(data, nominal, span), free, search.drifts, effort)

@@ -45,7 +45,7 @@ from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
 from pierburg_ros.inference.choice import Name, Score, strongest, taken
 from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.inference.explanation import AFTER, WHEN
-from pierburg_ros.inference.fit import Fit, adequate, rms_of
+from pierburg_ros.inference.fit import Fit, rms_of
 
 HORIZONS = (0.1, 0.3, 1.0, 3.0)
 """Times over which a model predicts [s]. Given: the times that the report promises."""
@@ -149,7 +149,7 @@ def doubted(found: Found) -> list[Doubted]:
         Doubted(
             id=effect,
             confidence=name.confidence,
-            share=taken(found.choice.described, name.fit) if not adequate(found.choice.chosen) else None,
+            share=taken(found.choice.described, name.fit) if not found.choice.explained else None,
             parameters={
                 each: Estimate(
                     value=name.fit.values[f"{effect}.{each}"],
@@ -322,14 +322,14 @@ def ruled_out(limit: Limit, found: Found) -> RuledOut:
         id=limit.effect,
         parameter=limit.parameter,
         unit=unit,
-        given="complete" if adequate(found.choice.chosen) else "residual",
+        given="complete" if found.choice.explained else "residual",
         **side,
     )
 
 
 def remaining(found: Found) -> Remaining:
     """What the chosen effects leave, as a share and in words."""
-    if adequate(found.choice.chosen):
+    if found.choice.explained:
         return Remaining(share=found.shares.remains, looks_like="noise")
     forms = remains.shapes(found.lacking)
     return Remaining(share=found.shares.remains, looks_like=remains.in_words(forms, found.lacking), shapes=forms)
