@@ -58,7 +58,8 @@ class Choice:
     """The chosen explanation, and the model that is handed out.
 
     `explained`: it leaves only noise. `chosen` is judged with the pull of its fitter, `handed` is the same explanation
-    with the weakest pull. `ties` are alternatives to each of its quantities, by effect id or parameter name. `names` holds its effects by id, and
+    with the weakest pull. `ties` are alternatives to each of its quantities, by effect id or parameter name. `names`
+    holds its effects by id, and
     `doubted` those of other explanations that gain something. All other fits have the weakest pull: `predictor` is the
     one of them that predicts held-out samples best, `described` and `estimated` (all parameters again, no effect)
     included.
