@@ -302,10 +302,11 @@ def least(name: str) -> float:
 def name_of(name: str, best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
     """How sure an effect, or a change, of the `best` fit is, against the best of all without it that add no more.
 
-    What explains all takes the whole error, whatever others leave.
+    What explains all takes the whole error, whatever others leave; its rivals change no more quantities than it does.
     """
-    others = (fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best)))
-    rival = min(others, key=lambda fit: fit.chi2)
+    others = [fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best))]
+    simple = [fit for fit in others if fit.size <= best.size] if explained else others
+    rival = min(simple or others, key=lambda fit: fit.chi2)
     share = 1.0 if explained else taken(rival, best)
     return Name(better(rival, best) * share, best, rival)
 

@@ -18,8 +18,12 @@ LAG, PLAY = Variant("sensor_lag", ("time_constant",)), Variant("backlash", ("gap
 
 def left(excess: float, *variants: Variant):
     """A fit that leaves so much above the squared noise."""
+    ratio = (1.0 + excess) ** 0.5
     return SimpleNamespace(
-        ratio=(1.0 + excess) ** 0.5, structure=100.0 if excess > 0.0 else 0.0, explanation=Explanation((), variants)
+        ratio=ratio,
+        unseen_ratio=ratio,
+        structure=100.0 if excess > 0.0 else 0.0,
+        explanation=Explanation((), variants),
     )
 
 
