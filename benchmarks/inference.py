@@ -27,7 +27,7 @@ def main() -> None:
         run = record(trial)
         recording = Recording(trial.name, "hall_voltage", run.time, run.measured, Channel(run.time, run.duty))
         began = time.process_time()
-        choice = infer([recording], nominal)
+        choice = infer([recording], nominal).choice
         best, held_out = choice.chosen, choice.predictor.fitter.data.validation
         names = set(best.explanation.effects) | ({"sensor_quantization"} if best.fitter.data.step else set())
         told = (choice.verdict, names) == (trial.verdict, set(trial.effect_ids) if trial.kind != "outside" else set())

@@ -16,13 +16,13 @@ def named(choice: Choice) -> set[str]:
 
 
 def test_the_model_as_described_is_consistent():
-    choice = infer([recording({})], NOMINAL)
+    choice = infer([recording({})], NOMINAL).choice
     assert choice.verdict == "consistent"
     assert choice.chosen.size == 0
 
 
 def test_a_drift_is_a_drift():
-    choice = infer([recording({"armature_resistance": 5.2})], NOMINAL)
+    choice = infer([recording({"armature_resistance": 5.2})], NOMINAL).choice
     assert choice.verdict == "parameter_drift"
     assert choice.chosen.explanation.drifted == ("armature_resistance",)
     assert choice.chosen.values["armature_resistance"] == pytest.approx(5.2, rel=0.01)
@@ -39,7 +39,7 @@ def test_a_drift_is_a_drift():
     ids=lambda hidden: next(iter(hidden)).split(".")[0],
 )
 def test_an_effect_beside_a_drift_in_closed_loop_is_named(hidden):
-    choice = infer([recording_in_closed_loop({**hidden, "spring_preload": 0.31})], NOMINAL)
+    choice = infer([recording_in_closed_loop({**hidden, "spring_preload": 0.31})], NOMINAL).choice
     assert choice.verdict == "missing_physics"
     assert named(choice) == {next(iter(hidden)).split(".")[0]}
     assert {name: choice.chosen.values[name] for name in hidden} == pytest.approx(hidden, rel=0.15)
@@ -49,18 +49,18 @@ def test_an_effect_beside_a_drift_in_closed_loop_is_named(hidden):
 def test_two_effects_are_named():
     hidden = {"cogging_torque.amplitude": 0.02, "cogging_torque.periods_per_motor_revolution": 3.0}
     hidden |= {"sensor_lag.time_constant": 0.015}
-    choice = infer([recording(hidden)], NOMINAL)
+    choice = infer([recording(hidden)], NOMINAL).choice
     assert named(choice) == {"cogging_torque", "sensor_lag"}
 
 
 def test_an_effect_that_equals_two_drifts_is_named_with_the_tie():
-    choice = infer([recording({"viscous_friction.coefficient": 0.03})], NOMINAL)
+    choice = infer([recording({"viscous_friction.coefficient": 0.03})], NOMINAL).choice
     assert named(choice) == {"viscous_friction"}
     assert ("armature_resistance", "torque_constant") in choice.ties["viscous_friction"]
 
 
 def test_the_model_handed_out_predicts_best_of_all_that_were_fitted():
-    choice = infer([recording({"load_dependent_friction.coefficient": 0.12})], NOMINAL)
+    choice = infer([recording({"load_dependent_friction.coefficient": 0.12})], NOMINAL).choice
     held_out = choice.predictor.fitter.data.validation
     least = min(rms_of(fit, held_out) for fit in choice.fits)
     assert rms_of(choice.predictor, held_out) <= 1.01 * least
@@ -68,7 +68,7 @@ def test_the_model_handed_out_predicts_best_of_all_that_were_fitted():
 
 def test_the_number_of_jobs_changes_nothing():
     hidden = recording({"pwm_deadband.width": 0.02})
-    one, two = (infer([hidden], NOMINAL, jobs=jobs) for jobs in (1, 2))
+    one, two = (infer([hidden], NOMINAL, jobs=jobs).choice for jobs in (1, 2))
     assert one.chosen.values == two.chosen.values
     assert [fit.chi2 for fit in one.fits] == [fit.chi2 for fit in two.fits]
     assert one.chosen.fitter.effort.simulations == two.chosen.fitter.effort.simulations
