@@ -36,7 +36,7 @@ class RecordedTime:
         self._followed = {CLOCK, *(node.resolve_topic_name(name) for name in OF_THE_PLANT)}
         self._last: dict[str, int] = {}
         self._held: dict[str, Received] = {}
-        self._latest, self._jumped = 0, -FILES_APART
+        self._latest, self._newest, self._jumped = 0, 0, -FILES_APART
         self._publisher = node.create_publisher(Header, RECORDED_UNTIL, PROGRESS) if is_simulated else None
 
     def take(self, received: Received, sent: int) -> None:
@@ -66,14 +66,18 @@ class RecordedTime:
             if time is None:
                 self._held |= {each.topic.name: each} if each.topic.lasts else {}
                 continue
-            if self._goes_back(time):
+            if each.topic.name == CLOCK and self._goes_back(each):
                 found.append([])
             found[-1] += [(held, time, time) for held in (*self._held.values(), each)]
             self._held.clear()
         return found
 
-    def _goes_back(self, time: int) -> bool:
-        back, self._latest = time < self._latest, time
+    def _goes_back(self, clock: Received) -> bool:
+        """Whether a `/clock` that was sent later than all before it reads less: what is only late goes back nowhere."""
+        if clock.sent < self._newest:
+            return False
+        reading = messages.nanoseconds(deserialize_message(clock.data, ClockMessage).clock)
+        back, self._latest, self._newest = reading < self._latest, reading, clock.sent
         now = monotonic()
         if not back or now - self._jumped < FILES_APART:
             return False
