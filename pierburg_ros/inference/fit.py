@@ -125,13 +125,6 @@ class Fit:
         data = self.fitter.data
         return math.sqrt(self.chi2 / self.fitted.size + data.half_step**2 / 3.0)
 
-    @property
-    def unseen_ratio(self) -> float:
-        """Error over the noise on the samples that choose, root mean square; 1 where there are none."""
-        data = self.fitter.data
-        left = beyond(self.residual[data.validation], data.half_step)
-        return math.sqrt(float(np.mean(np.square(left))) + data.half_step**2 / 3.0) if left.size else 1.0
-
     @cached_property
     def repetition(self) -> float:
         """Number of fitted samples that count as one."""
@@ -270,11 +263,8 @@ def inertia_time(model: Model) -> float:
 
 
 def adequate(fit: Fit) -> bool:
-    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time.
-
-    So it must on samples that it has not used: several effects can bend to an error that is none of them.
-    """
-    return fit.ratio < EXPLAINED and fit.unseen_ratio < EXPLAINED and fit.structure < SIGNIFICANT
+    """Whether a fit leaves only noise, of a size that may be estimated too low, and nothing correlated in time."""
+    return fit.ratio < EXPLAINED and fit.structure < SIGNIFICANT
 
 
 def excess(fit: Fit) -> float:

@@ -21,7 +21,6 @@ def left(excess: float, *variants: Variant):
     ratio = (1.0 + excess) ** 0.5
     return SimpleNamespace(
         ratio=ratio,
-        unseen_ratio=ratio,
         structure=100.0 if excess > 0.0 else 0.0,
         explanation=Explanation((), variants),
     )
