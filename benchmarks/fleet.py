@@ -37,7 +37,7 @@ def main() -> None:
     parser.add_argument("--recordings", type=int, default=25)
     parser.add_argument("--courses", type=int, default=200, help="fleets of drawn courses")
     parser.add_argument("--drawn", type=int, nargs=2, default=(40, 25), help="their units and recordings")
-    parser.add_argument("--budget", type=float, default=12.0)
+    parser.add_argument("--budget", default="1")
     parser.add_argument("--jobs", type=int)
     parser.add_argument("--scheduler")
     given = parser.parse_args()
@@ -56,7 +56,7 @@ def main() -> None:
     write_section("proof", "\n".join(text))
 
 
-def diagnosed(found: Fleet, truth: dict[str, Any], budget: float) -> str:
+def diagnosed(found: Fleet, truth: dict[str, Any], budget: str) -> str:
     """What came of the simulated fleet."""
     by_unit = {name: [each for each in found.ageing if each.course.unit_name == name] for name in truth}
     counts = counted(by_unit, truth)
@@ -67,7 +67,7 @@ def diagnosed(found: Fleet, truth: dict[str, Any], budget: float) -> str:
 formulation of the physics (`benchmarks/fleet_simulation.py`):
 {ways(truth)}.
 Temperature (season 11 to 29 degC, and 4 K from day to day) and supply (12.6 to 14.4 V) vary and are recorded. Budget
-{budget:g} s a diagnosis, processor time {np.median(seconds):.1f} s (median), {np.max(seconds):.0f} s (largest), reports
+{budget} each, processor time {np.median(seconds):.1f} s (median), {np.max(seconds):.0f} s (largest), reports
 included. On {machine()}.
 
 {table(counts)}

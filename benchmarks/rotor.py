@@ -1,6 +1,6 @@
 """Cogging of a real rotor: each recording diagnosed by itself, and how well the maps over a turn agree.
 
-`python benchmarks/rotor.py [--shared FOLDER] [--budget SECONDS]` prints what is found. The recordings are
+`python benchmarks/rotor.py [--shared FOLDER] [--budget EFFORT]` prints what is found. The recordings are
 those of `data/odrive` in the shared folder; nothing of them is part of the package.
 """
 
@@ -19,7 +19,7 @@ import pierburg_ros as pr
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Estimate
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.torques.missing import missing
+from pierburg_ros.plant.torques import load
 from pierburg_ros.recording import Channel, Recording
 
 COUNTS = 8192
@@ -33,7 +33,7 @@ def main() -> None:
     """Diagnose every recording by itself and print what was named, and the correlations of the maps."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shared", type=Path, default=Path("../shared"))
-    parser.add_argument("--budget", type=float, default=120.0)
+    parser.add_argument("--budget", default="1")
     parser.add_argument("--spins", action="store_true", help="the steps of the rotor spinning up, too")
     options = parser.parse_args()
     folder = options.shared / "data/odrive"
@@ -65,8 +65,8 @@ def numbers(parameters: dict[str, Estimate]) -> str:
 
 def over_a_turn(model: Model) -> Signal:
     """Load torque of `model` over a turn [N.m], the mean left out: its cogging and what else repeats itself."""
-    still = np.zeros(TURN.size)
-    torque = -missing(model.record()[0], still, still, TURN, still, still)
+    record = model.record()[0]
+    torque = np.array([load.load_at(record, angle, 0.0, 0.0) + load.ripple(record, angle) for angle in TURN])
     return torque - np.mean(torque)
 
 

@@ -1,6 +1,6 @@
 """A servo on a pendulum, simulated by other means than the package's, and what a diagnosis makes of each recording.
 
-    python benchmarks/servo.py [--output FOLDER] [--budget SECONDS] [--only CASE ...]
+    python benchmarks/servo.py [--output FOLDER] [--budget EFFORT] [--only CASE ...]
 
 prints a table. The machine moves by explicit steps of 20 us under a proportional loop at 200 Hz
 that reads an encoder of 4096 steps. Its description is the shipped `xl330`, off by 10 to 30 % in three numbers. What
@@ -156,7 +156,7 @@ def main() -> None:
     """Diagnose a recording of each case, and print what was found."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("results/servo"))
-    parser.add_argument("--budget", type=float, default=120.0)
+    parser.add_argument("--budget", default="1")
     parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES), metavar="CASE")
     given = parser.parse_args()
     print("| hidden | verdict | named | RMSE on another recording [rad] | s |")

@@ -97,7 +97,7 @@ ROOMS = {
         "least_squares": set(),
         "data": {"evidence"},
         "motion": {"data"},
-        "balance": {"motion"},
+        "balance": {"data", "motion"},
         "coordinates": {"explanation"},
         "fit": {"coordinates", "data", "evidence", "explanation", "least_squares"},
         "replay": {"data", "fit"},

@@ -149,9 +149,7 @@ def possible(motion: Motion, nominal: Model) -> Iterator[Column]:
         if effect.along is None or effect.dead_time or actuator.obstacle(effect):
             continue
         for variant in effect.variants:
-            starts = variant.over(span) if variant.over else variant.starts
-            assert not callable(starts)
-            for start in few(effect, starts):
+            for start in few(effect, variant.over(span)):
                 own = {**effect.in_units(start, scales), **variant.fixed}
                 values = added(nominal.values, Variant(effect.id, variant.free), own)
                 yield from allowed(effect, start, motion, effect.along(motion, values))

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.limits import Seen, seen
 from pierburg_ros.diagnosis.remains import Lacking, lacking, shaped
-from pierburg_ros.effects import ROUNDING, STEP
-from pierburg_ros.inference.choice import Choice, strongest
-from pierburg_ros.inference.data import Data, Run
+from pierburg_ros.effects import STEP
+from pierburg_ros.inference.choice import Choice
+from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Fit, Fitter, excess, rms_of
+from pierburg_ros.inference.fit import Fit, Fitter, excess, rms_of, strongest
 from pierburg_ros.inference.infer import Inferred
 from pierburg_ros.inference.intervals import Interval, intervals
 from pierburg_ros.inference.least_squares import FULL
@@ -49,7 +50,8 @@ class Found:
     """A choice and all that is told of it.
 
     `written` is the fit whose model is handed out, with a map of the missing torque where that predicts better. `whole`
-    are the chosen effects with all drifts free, and `lacking` what they leave of the balance. `intervals` are those of
+    are the chosen effects with all drifts free, and `lacking` what they leave of the balance;
+    `lacking_of_written` is the same of `written`, but for the map. `intervals` are those of
     the chosen explanation by dotted name, and `tied_with` what may move with each quantity if all else may drift too.
     `step` is that of a converter, if it is named, in the measured unit.
     """
@@ -58,6 +60,7 @@ class Found:
     written: Fit
     whole: Fit
     lacking: Lacking
+    lacking_of_written: Lacking
     intervals: Mapping[str, Interval]
     tied_with: Mapping[str, tuple[str, ...]]
     seen: Mapping[str, Seen]
@@ -95,26 +98,24 @@ class Found:
 
     def residual(self, fit: Fit) -> Signal:
         """What a fit leaves over all runs [measured unit], simulated as it is shown."""
-        return self.shown.residual(fit.model, fit.after, when_of(fit)) * self.data.noise
+        return self.shown.left_by(fit) * self.data.noise
 
-    def of_run(self, residual: Signal, run: Run) -> Signal:
-        """The part of a residual over all runs that belongs to one of them."""
-        first = 0
-        for each in self.data.runs:
-            if each is run:
-                return residual[first : first + run.time.size]
-            first += each.time.size
-        raise ValueError(run.name)
+    @cached_property
+    def errors(self) -> dict[str, Signal]:
+        """The same of the model as described, with parameters re-estimated, and of the one that is handed out."""
+        choice = self.choice
+        models = {"nominal": choice.described, "recalibrated": choice.estimated, "final": self.written}
+        return {key: self.residual(fit) for key, fit in models.items()}
 
 
 def found(inferred: Inferred, pool: Executor) -> Found:
     """All that is told of a choice."""
     choice = inferred.choice
     whole = with_all_drifts(inferred)
-    at = lacking(whole, inferred.balance)
     written = choice.predictor
+    of_written = lacking(written, inferred.balance)
     if not choice.explained:
-        mapped = shaped(written, lacking(written, inferred.balance))
+        mapped = shaped(written, of_written)
         held_out = written.fitter.data.validation
         if mapped is not None and rms_of(mapped, held_out) < rms_of(written, held_out):
             written = mapped
@@ -126,7 +127,8 @@ def found(inferred: Inferred, pool: Executor) -> Found:
         inferred=inferred,
         written=written,
         whole=whole,
-        lacking=at,
+        lacking=lacking(whole, inferred.balance),
+        lacking_of_written=of_written,
         intervals=intervals(own),
         tied_with={name: each.tied_with for name, each in intervals(own, held).items()},
         seen=seen(whole, candidates, pool),
@@ -137,8 +139,7 @@ def found(inferred: Inferred, pool: Executor) -> Found:
 
 def doubtful(choice: Choice, variant: Variant) -> bool:
     """Whether an effect is stated elsewhere, so that no limit may exclude it: doubted, or as a tie."""
-    tied = {name for several in choice.ties.values() for names in several for name in names}
-    return variant.effect in choice.doubted or variant.effect in tied
+    return variant.effect in choice.doubted or variant.effect in choice.alternatives
 
 
 def with_all_drifts(inferred: Inferred) -> Fit:
@@ -174,13 +175,3 @@ def shares(choice: Choice) -> Shares:
         effects[effect] = Share(beside, max(estimated - least, 0.0) / start)
     remains = min(left / start, 1.0)
     return Shares(max(1.0 - together - remains, 0.0), effects, remains)
-
-
-def rounded(step: float) -> Variant:
-    """A converter of so many measured units a step."""
-    return Variant(ROUNDING.id, (), ((STEP.removeprefix(f"{ROUNDING.id}."), step),))
-
-
-def when_of(fit: Fit) -> float:
-    """When the second model of a fit takes over [s]; infinite where there is none."""
-    return fit.fitter.models(fit.explanation, fit.values)[2]

@@ -20,6 +20,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.least_squares import beside
 from pierburg_ros.inference.shortlist import added
 
 ONE_SIDED = 2.71
@@ -124,8 +125,8 @@ def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
 def _of_case(fit: Fit, case: Case) -> Seen | None:
     """The strength that is excluded; None where the effect cannot be added to the model."""
     least, largest = case.factors(fit)
-    left = fit.fitted - fit.basis @ (fit.basis.T @ fit.fitted)
-    allowed = ONE_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
+    left, counts_as_one = beside(fit.fitted, fit.basis), fit.repetition * max(fit.ratio**2, 1.0)
+    allowed = ONE_SIDED * counts_as_one
     factor, mark = 1.0, 0.0
     for step in range(STRENGTHS_TRIED):
         change = _change(fit, case, factor)
@@ -133,7 +134,7 @@ def _of_case(fit: Fit, case: Case) -> Seen | None:
             return None
         size = float(change @ change)
         if step == 0:
-            mark = size * factor**2 / (fit.repetition * max(fit.ratio**2, 1.0))
+            mark = size / counts_as_one
         if size <= 0.0:
             return Seen(None, mark)
         best = max(-float(change @ left) / size, 0.0)
@@ -162,16 +163,12 @@ def _change(fit: Fit, case: Case, factor: float) -> np.ndarray | None:
     except InputError:
         return None
     change = (fitter.residual(*models)[fitter.data.train] - fit.residual[fitter.data.train]) / factor
-    return np.asarray(change - fit.basis @ (fit.basis.T @ change))
+    return beside(change, fit.basis)
 
 
 def _values(fit: Fit, case: Case, factor: float) -> dict[str, float]:
     """All values with the effect at a factor of its start, its other numbers as there."""
-    return {**added(fit.values, case.variant, case.at(factor)), **_fixed(case)}
-
-
-def _fixed(case: Case) -> dict[str, float]:
-    return {f"{case.variant.effect}.{name}": value for name, value in case.variant.fixed}
+    return added(fit.values, case.variant, case.at(factor))
 
 
 def _fits(fit: Fit, case: Case, factor: float, possible: float) -> bool:

@@ -13,6 +13,7 @@ from pierburg_ros.diagnosis.schema import Direction, Over, RemainingShape, Resid
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.balance import Balance, missing
 from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.least_squares import beside
 from pierburg_ros.inference.motion import Motion
 from pierburg_ros.inference.shortlist import DEPENDENT, balanced, projected
 from pierburg_ros.pages.numbers import percent
@@ -54,7 +55,7 @@ class Lacking:
     @property
     def alone(self) -> Signal:
         """What changes of the parameters cannot make of the missing torque."""
-        return np.asarray(self.torque - self.basis @ (self.basis.T @ self.torque))
+        return beside(self.torque, self.basis)
 
 
 def lacking(fit: Fit, balance: Balance) -> Lacking:
@@ -128,7 +129,7 @@ def _beside(columns: Columns, taken: Signal) -> Signal:
         return np.empty((0, 0))
     own = np.stack(columns, axis=1)
     size = np.linalg.norm(own, axis=0)
-    rest = own - taken @ (taken.T @ own)
+    rest = beside(own, taken)
     if np.any(np.linalg.norm(rest, axis=0) <= DEPENDENT * size):
         return np.empty((0, 0))
     return np.asarray(np.linalg.qr(rest)[0])
@@ -223,8 +224,7 @@ def shaped(fit: Fit, at: Lacking) -> Fit | None:
         return None
     model = fit.model.with_residual(grid)
     after = fit.after and fit.after.with_residual(grid)
-    when = fit.fitter.models(fit.explanation, fit.values)[2]
-    return replace(fit, model=model, after=after, residual=fit.fitter.residual(model, after, when))
+    return replace(fit, model=model, after=after, residual=fit.fitter.residual(model, after, fit.when))
 
 
 def document(model: Model, at: Lacking, words: str) -> ResidualTorque | None:

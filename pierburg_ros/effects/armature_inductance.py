@@ -27,7 +27,6 @@ EFFECT = Effect(
     along=along,
     typical={"inductance": 0.002530387},
     variants=(Variant(("inductance",), grid(inductance=(0.0025, 0.0127))),),
-    memory="brief",
     linear=True,
     drives=("voltage",),
 )

@@ -40,7 +40,6 @@ EFFECT = Effect(
     variants=(
         Variant(("gap", "motor_friction_share"), grid(gap=(0.0095, 0.0255, 0.051), motor_friction_share=(0.1, 0.4))),
     ),
-    memory="brief",
     linear=True,
     jumps=True,
     drives=MOTORS,

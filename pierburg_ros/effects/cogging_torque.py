@@ -8,7 +8,6 @@ from pierburg_ros.effects.effect import (
     QUADRATURE,
     Effect,
     Elsewhere,
-    Missing,
     Motion,
     Parameter,
     Reach,
@@ -20,36 +19,16 @@ from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
 TURNS = (1.0, 1000.0)
-"""Range in which periods per motor revolution are looked for, as far as a recording tells them: a motor has at least
-one, and no motor more than the least common multiple of its poles and slots."""
+"""Range in which periods per motor revolution are searched: a motor has at least one, and no motor
+more than the least common multiple of its poles and slots."""
 FINEST = 50_000.0
 """Most periods in one turn of the output. Chosen: a motor of 50 periods behind a gear of 1000 to 1, more than is made;
 at no-load speed the simulator has eight steps for each."""
 PLAUSIBLE = 12
 """Most periods per motor revolution that are plausible. Chosen: the least common multiple of the poles and slots of a
-small brush motor is rarely more; what a recording shows clearly is looked at beyond it."""
+small brush motor is rarely more."""
 MOST_PERIODS = 128
 """Most periods in a turn of the motor that a balance looks at. Chosen: those of a large motor without gear."""
-COMMON = (2.0, 3.0, 6.0)
-"""Periods per motor revolution of common small motors: looked at whatever the recording shows."""
-
-
-def _turns(missing: Missing) -> Sequence[float]:
-    """The clearest rhythms of the missing torque [periods per motor revolution]."""
-    return missing.turns(TURNS, 4)
-
-
-def _whole_turns(missing: Missing) -> Sequence[float]:
-    """The same as whole numbers, for a motor has a whole number of teeth; then all that are plausible."""
-    return [*(float(round(rhythm)) for rhythm in _turns(missing)), *map(float, range(1, PLAUSIBLE + 1))]
-
-
-def _starts(missing: Missing) -> Sequence[Start]:
-    return [
-        {"amplitude": 0.0075, "periods_per_motor_revolution": periods, "phase": phase}
-        for periods in dict.fromkeys((*_turns(missing), *COMMON))
-        for phase in QUADRATURE
-    ]
 
 
 def _every_order(reach: Reach) -> Sequence[Start]:
@@ -120,8 +99,8 @@ EFFECT = Effect(
     strength=("amplitude",),
     along=along,
     typical={"amplitude": 0.0112086, "periods_per_motor_revolution": 6.0},
-    variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _starts, over=_every_order),),
-    ripple=Ripple("amplitude", "periods_per_motor_revolution", "phase", _whole_turns, whole=True),
+    variants=(Variant(("amplitude", "periods_per_motor_revolution", "phase"), _every_order),),
+    ripple=Ripple("amplitude", "phase"),
     turns_within=_quarter_turn,
 )
 

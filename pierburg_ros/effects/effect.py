@@ -16,7 +16,6 @@ Stage = Literal["input", "drive", "transmission", "load", "friction", "sensor"]
 Drive = Literal["voltage", "current", "torque"]
 Load = Literal["spring", "pendulum", "none"]
 Sensor = Literal["hall_voltage", "position", "speed"]
-Memory = Literal["none", "brief", "lasting"]
 Start = Mapping[str, float]
 Quantity = Literal[
     "command_delay",
@@ -173,25 +172,6 @@ class Reach(Protocol):
         """The largest angle."""
 
 
-class Missing(Protocol):
-    """What recordings show of the torque that a model misses: where starting values may be read from.
-
-    Like starts it is in multiples of the actuator's scales: of the time of a travel, the travel, the stall torque.
-    """
-
-    def turns(self, between: tuple[float, float], most: int) -> Sequence[float]:
-        """The strongest rhythms over the angle [periods per motor revolution] within `between`, strongest first."""
-
-    def pulses(self, between: tuple[float, float], most: int) -> Sequence[float]:
-        """The strongest rhythms in time, periods in the time of a travel, within `between`, strongest first."""
-
-    def spans(self, most: int) -> Sequence[tuple[float, float, float]]:
-        """Spans of time that stand out: start, end or 0 for the end of the recording, torque."""
-
-    def tight_spots(self, most: int) -> Sequence[float]:
-        """Angles at which more friction is missing than elsewhere, the clearest first."""
-
-
 @dataclass(frozen=True)
 class Parameter(parameter.Parameter):
     """One number of an effect, and how a search moves it.
@@ -245,27 +225,25 @@ class Parameter(parameter.Parameter):
 class Variant:
     """One way in which an effect may act: what is free, what is fixed, and where a search for it starts.
 
-    `starts` are values by parameter in multiples of their scales, or what makes them of the torque that a model misses.
-    A parameter that is counted from another one starts by what it exceeds that.
+    `starts` are values by parameter in multiples of their scales, or what makes them of how far recordings go: as many
+    as a balance can screen. A parameter that is counted from another one starts by what it exceeds that.
     """
 
     free: tuple[str, ...]
-    starts: tuple[Start, ...] | Callable[[Missing], Sequence[Start]]
+    starts: tuple[Start, ...] | Callable[[Reach], Sequence[Start]]
     fixed: Mapping[str, float] = field(default_factory=dict)
-    over: Callable[[Reach], Sequence[Start]] | None = None
-    """Where a search starts that depends on how far recordings go, as many as a balance can screen."""
+
+    def over(self, reach: Reach) -> Sequence[Start]:
+        """The starts for recordings that go so far."""
+        return self.starts(reach) if callable(self.starts) else self.starts
 
 
 @dataclass(frozen=True)
 class Ripple:
-    """A sine in the load: the parameters that are its amplitude, rhythm and phase, and where its rhythm may lie."""
+    """A sine in the load: the parameters that are its amplitude and phase."""
 
     amplitude: str
-    rhythm: str
     phase: str
-    rhythms: Callable[[Missing], Sequence[float]]
-    whole: bool = False
-    """Whether the rhythm is a whole number, held while the others are searched: it trades against the phase."""
 
 
 @dataclass(frozen=True)
@@ -317,9 +295,6 @@ class Effect:
     ripple: Ripple | None = None
     state: tuple[str, ...] = ()
     """Numbers that the plant's state keeps for it, `s.<id>.<name>` in the kernels, all 0 at the start."""
-    memory: Memory = "none"
-    """Whether it remembers what was: not at all, briefly, so that a stretch of a recording may start afresh, or for
-    longer than any stretch."""
     linear: bool = False
     """Whether torques stay straight lines of angle and velocity between events: the simulator then takes no
     shorter steps for it."""
@@ -333,14 +308,10 @@ class Effect:
     turns_within: Callable[[Mapping[str, float]], float] | None = None
     """Travel [rad] within which its torque turns no more than once, from all values of a model by dotted name;
     None: its torque does not turn over the angle."""
-    constant_part: tuple[str, str] | None = None
-    """A parameter of it that, acting throughout, is the same as a change of a base parameter: both names."""
     play: str | None = None
     """The parameter that is the width of a free play [rad]: the driven side follows when that is used up."""
     dead_time: str | None = None
     """The parameter that is a time [s] for which a command has no effect."""
-    dead_band: str | None = None
-    """The parameter by which a command has to differ from 0 to have an effect."""
     lag: str | None = None
     """The parameter that is the time constant [s] of a first-order lag of the measurement."""
     rounds: str | None = None
@@ -348,11 +319,6 @@ class Effect:
     put_in: PutIn | None = None
     """Puts it into the channels of a real recording; None: that changes how the shaft moves, which no channel can be
     made to show exactly."""
-
-    @property
-    def late(self) -> bool:
-        """Whether all that it does is to make the command act, or the measurement show, later."""
-        return self.dead_time is not None or self.lag is not None
 
     def parameter(self, name: str) -> Parameter:
         """The declaration of the parameter called `name`, without the id; KeyError where there is none."""

@@ -11,7 +11,6 @@ from pierburg_ros.effects.effect import (
     QUADRATURE,
     Effect,
     Elsewhere,
-    Missing,
     Motion,
     Parameter,
     Reach,
@@ -25,23 +24,6 @@ from pierburg_ros.kernel import kernel
 FREQUENCIES = (0.0095, 1.9)
 """Range in which the rhythm of a load is looked for, in periods to the time of a travel: slower ones take longer than a
 recording, and the shaft hardly follows faster ones."""
-
-
-def _pulses(missing: Missing) -> Sequence[float]:
-    """The strongest rhythms of the missing torque in time."""
-    return missing.pulses(FREQUENCIES, 5)
-
-
-def _pulsating(missing: Missing) -> Sequence[Start]:
-    return [
-        {"amplitude": 0.0075, "frequency": frequency, "phase": phase}
-        for frequency in _pulses(missing)
-        for phase in QUADRATURE
-    ]
-
-
-def _for_a_while(missing: Missing) -> Sequence[Start]:
-    return [{"torque": load, "start": start, "end": end} for start, end, load in missing.spans(4)]
 
 
 def _every_rhythm(reach: Reach) -> Sequence[Start]:
@@ -154,12 +136,11 @@ EFFECT = Effect(
     along=along,
     typical={"torque": 0.018681, "amplitude": 0.0112086, "frequency": 0.1909623},
     variants=(
-        Variant(("amplitude", "frequency", "phase"), _pulsating, over=_every_rhythm),
-        Variant(("torque", "start", "end"), _for_a_while, over=_every_span),
+        Variant(("amplitude", "frequency", "phase"), _every_rhythm),
+        Variant(("torque", "start", "end"), _every_span),
     ),
-    ripple=Ripple("amplitude", "frequency", "phase", _pulses),
+    ripple=Ripple("amplitude", "phase"),
     jumps=True,
-    constant_part=("torque", "spring_preload"),
 )
 
 

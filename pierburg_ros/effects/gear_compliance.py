@@ -48,7 +48,6 @@ EFFECT = Effect(
     along=along,
     typical={"stiffness": 17.60643, "damping": 0.06146564},
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.35, 7.0, 23.5), damping=(0.061,))),),
-    memory="brief",
     linear=True,
     drives=MOTORS,
 )

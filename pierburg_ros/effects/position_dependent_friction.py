@@ -6,18 +6,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Missing, Motion, Parameter, Reach, Start, Variant
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Reach, Start, Variant
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
-
-
-def _starts(missing: Missing) -> Sequence[Start]:
-    return [
-        {"amplitude": 0.015, "center": center, "width": width}
-        for center in missing.tight_spots(4)
-        for width in (0.038, 0.127)
-    ]
-
 
 FADED = 6.0
 """Widths from its centre at which a spot is nothing: exp(-36) is the rounding of a number."""
@@ -81,7 +72,7 @@ EFFECT = Effect(
     strength=("amplitude",),
     along=along,
     typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
-    variants=(Variant(("amplitude", "center", "width"), _starts, over=_every_spot),),
+    variants=(Variant(("amplitude", "center", "width"), _every_spot),),
     jumps=True,
 )
 

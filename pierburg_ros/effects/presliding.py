@@ -47,7 +47,6 @@ EFFECT = Effect(
     variants=(Variant(("stiffness", "damping"), grid(stiffness=(2.9, 8.8, 29.3), damping=(0.123,))),),
     # rad: of the friction contact, at the shaft where the teeth have parted; and of the motor side then
     state=("bristle", "motor_bristle"),
-    memory="brief",
 )
 
 

@@ -57,7 +57,6 @@ EFFECT = Effect(
     variants=(Variant(("width",), grid(width=(0.005, 0.015, 0.04))),),
     linear=True,
     drives=("voltage",),
-    dead_band="width",
     put_in=put_in,
 )
 

@@ -52,7 +52,6 @@ EFFECT = Effect(
     variants=(Variant(("width",), grid(width=(0.0032, 0.0127))),),
     # rad: the magnet, and the shaft when the magnet last followed it
     state=("magnet", "followed"),
-    memory="brief",
     linear=True,
     sensors=("hall_voltage", "position"),
     play="width",

@@ -60,7 +60,6 @@ EFFECT = Effect(
     variants=(Variant(("time_constant",), grid(time_constant=(0.031, 0.105, 0.26))),),
     # rad, the angle that the sensor shows
     state=("lagged",),
-    memory="brief",
     lag="time_constant",
     linear=True,
     put_in=put_in,

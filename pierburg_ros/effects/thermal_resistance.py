@@ -81,7 +81,6 @@ EFFECT = Effect(
     ),
     # K, of the winding
     state=("rise",),
-    memory="lasting",
     linear=True,
     drives=("voltage",),
 )

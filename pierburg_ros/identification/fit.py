@@ -11,7 +11,7 @@ import numpy as np
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.balance import Balance, balance_of
 from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.inference.covariance import Covariance, at_least_effective
 from pierburg_ros.inference.data import Data, all_fitted
@@ -19,7 +19,6 @@ from pierburg_ros.inference.evidence import EXPLAINED, rms
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fit, Fitter, rungs
 from pierburg_ros.inference.intervals import by_run, slopes_at
-from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.polish import polished
 from pierburg_ros.inference.replay import forgets, pull_of
 from pierburg_ros.inference.shortlist import balanced
@@ -84,9 +83,7 @@ class Identified:
         """
         data = self.fitter.data
         replayed = self.fitter.pulled(pull_of(data.actuator, data.period))
-        lengths = [run.time.size for run in data.runs]
-        left = replayed.residual(self.model) * data.noise * self.per_unit
-        return tuple(np.split(left, np.cumsum(lengths)[:-1]))
+        return tuple(data.by_run(replayed.residual(self.model) * data.noise * self.per_unit))
 
     @property
     def rmse(self) -> float:
@@ -167,17 +164,16 @@ def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) 
 
 def balanced_starts(fitter: Fitter, free: Sequence[str]) -> list[dict[str, float]]:
     """The values with which torques balance along the motion of the recordings; none where these tell too little."""
-    nominal, balance = fitter.nominal, balance_of(fitter)
+    nominal, balance = fitter.nominal, own_balance(fitter)
     if balance.size < FEWEST_MOMENTS * len(free):
         return []
     values, _ = balanced(balance, nominal, free, nominal.values, nominal.active_effects)
     return [in_order(values, nominal)]
 
 
-def balance_of(fitter: Fitter) -> Balance:
+def own_balance(fitter: Fitter) -> Balance:
     """The balance along the motion of all recordings."""
-    data, first = fitter.data, constants(fitter.data, fitter.nominal)[0]
-    return Balance(data.actuator, tuple(motion_of(run, fitter.nominal, first) for run in data.runs))
+    return balance_of(fitter.data, fitter.nominal, constants(fitter.data, fitter.nominal)[0])
 
 
 def identified(found: Fit, recordings: Sequence[Recording]) -> Identified:

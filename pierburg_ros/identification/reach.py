@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.identification.fit import FEWEST_MOMENTS, Identified, balance_of, fit, fitter_of
+from pierburg_ros.identification.fit import FEWEST_MOMENTS, Identified, fit, fitter_of, own_balance
 from pierburg_ros.identification.turn import with_turn
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import in_order
@@ -63,7 +63,7 @@ def begun(
         return model, found
     far = model
     for _ in range(RANGES_MOVED):
-        far = farther(far, balance_of(fitter_of(recordings, far)), free)
+        far = farther(far, own_balance(fitter_of(recordings, far)), free)
     again = fit(far, recordings, free, jobs)
     return (far, again) if again.rmse < found.rmse else (model, found)
 

@@ -16,7 +16,9 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.inference.motion import Motion
+from pierburg_ros.inference.data import Data
+from pierburg_ros.inference.motion import Motion, motion_of
+from pierburg_ros.plant import Model
 
 OUTLYING = 6.0
 """Residual, in median absolute ones, beyond which a sample is left out: it is an event. Derived: of normal errors one
@@ -65,6 +67,11 @@ class Balance:
         parts = np.split(inside, ends)
         kept = (motion.only(part) for motion, part in zip(self.motions, parts, strict=True))
         return Balance(self.actuator, tuple(kept))
+
+
+def balance_of(data: Data, model: Model, constant: float) -> Balance:
+    """The balance along all runs, with filters for what a `model` does in a time `constant` [s]."""
+    return Balance(data.actuator, tuple(motion_of(run, model, constant) for run in data.runs))
 
 
 def missing(motion: Motion, values: Mapping[str, float], effects: Sequence[str]) -> Signal:

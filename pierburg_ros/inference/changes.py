@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.inference.balance import Balance
-from pierburg_ros.inference.coordinates import Coordinates, in_order
+from pierburg_ros.inference.coordinates import Coordinates
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.inference.fit import Fit
-from pierburg_ros.inference.least_squares import jacobian
-from pierburg_ros.inference.shortlist import balanced
+from pierburg_ros.inference.least_squares import beside
+from pierburg_ros.inference.shortlist import balanced, sloped
 
 MOMENTS = 60
 """Moments of a recording at which a change is tried. Work: a fit moves a moment on from there; not varied."""
@@ -38,21 +38,14 @@ def changes(fit: Fit, balance: Balance) -> list[Change]:
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, names, fit.values, acting)
     coordinates = Coordinates(names, nominal, balance.duration)
-    point = coordinates.point(values)
-
-    def residual(at: np.ndarray) -> np.ndarray:
-        return inside.residual(in_order({**values, **coordinates.values(at)}, nominal), acting)
-
-    left = residual(point)
-    slopes = jacobian(residual, point, left, *coordinates.bounds, coordinates.steps)
+    left, slopes = sloped(inside, nominal, names, values, acting)
     basis = np.linalg.qr(slopes)[0]
-    left = left - basis @ (basis.T @ left)
+    left = beside(left, basis)
     time, end = inside.motions[0].time, balance.duration
     found = []
     for place, name in enumerate(names):
         for moment in np.linspace(FROM_ENDS, 1.0 - FROM_ENDS, MOMENTS) * end:
-            column = np.where(time >= moment, slopes[:, place], 0.0)
-            column = column - basis @ (basis.T @ column)
+            column = beside(np.where(time >= moment, slopes[:, place], 0.0), basis)
             size = float(column @ column)
             if size > 0.0:
                 step = -float(column @ left) / size

@@ -22,7 +22,7 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, TIED, certainty, probability
 from pierburg_ros.inference.explanation import Explanation, id_of, jumps, without
 from pierburg_ros.inference.explanation import quantities as quantities_of
-from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, rms_of
+from pierburg_ros.inference.fit import Fit, adequate, excess, rms_of, strongest
 from pierburg_ros.inference.polish import polished
 from pierburg_ros.inference.search import DEEPEST, key
 from pierburg_ros.inference.shortlist import DEPENDENT
@@ -59,10 +59,9 @@ class Choice:
 
     `explained`: it leaves only noise. `chosen` is judged with the pull of its fitter, `handed` is the same explanation
     with the weakest pull. `ties` are alternatives to each of its quantities, by effect id or parameter name. `names`
-    holds its effects by id, and
-    `doubted` those of other explanations that gain something. All other fits have the weakest pull: `predictor` is the
-    one of them that predicts held-out samples best, `described` and `estimated` (all parameters again, no effect)
-    included.
+    holds its effects by id, and `doubted` those of other explanations that gain something. All other fits have the
+    weakest pull: `predictor` is the one of them that predicts held-out samples best, `described` and `estimated` (all
+    parameters again, no effect) included.
     """
 
     explained: bool
@@ -75,6 +74,11 @@ class Choice:
     names: Mapping[str, Name]
     doubted: Mapping[str, Name] = field(default_factory=dict)
     ties: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
+
+    @property
+    def alternatives(self) -> frozenset[str]:
+        """All that may stand in the place of one of its quantities."""
+        return frozenset(name for several in self.ties.values() for names in several for name in names)
 
     @property
     def verdict(self) -> Verdict:
@@ -172,11 +176,6 @@ def fewest(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> li
             break
         found += fitted(((each, explanation) for each in able for explanation in each.best_of_size(size)), pool)
     return found[len(fits) :]
-
-
-def strongest(fitter: Fitter) -> Fitter:
-    """The same fitter with the first pull of the ladder."""
-    return fitter.pulled(ladder(fitter.data)[0])
 
 
 def fitted(pairs: Iterable[tuple[Parabola, Explanation]], pool: Executor) -> list[Fit]:

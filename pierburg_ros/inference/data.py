@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,6 +113,10 @@ class Data:
     def counts(self) -> Flags:
         """Whether each sample of all runs counts."""
         return np.concatenate([run.counts for run in self.runs])
+
+    def by_run(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+        """Values of all samples, shape (samples,), one array for each run."""
+        return np.split(values, np.cumsum([run.time.size for run in self.runs])[:-1])
 
     @cached_property
     def train(self) -> Flags:

@@ -33,16 +33,6 @@ FEWEST_BLOCKS = 8
 a half."""
 
 
-def gain(worse: Signal, better: Signal) -> float:
-    """Evidence for the `better` of two residuals of the same samples, in -2 log likelihood; negative where it is worse.
-
-    The size of the error is unknown, so its logarithm counts. Samples count once for each stretch over which the
-    smaller residual is correlated.
-    """
-    ratio = float(worse @ worse) / max(float(better @ better), 1e-300)
-    return better.size / repetition(better) * math.log(max(ratio, 1e-300))
-
-
 def certainty(worse: Signal, better: Signal, block: NDArray[np.int64]) -> float:
     """How many standard deviations surely the `better` of two residuals is better, by the spread between blocks.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pierburg_ros.effects import EFFECT
@@ -15,12 +14,6 @@ class Variant:
     effect: str
     free: tuple[str, ...]
     fixed: tuple[tuple[str, float], ...] = ()
-
-    @property
-    def label(self) -> str:
-        """Label for the user: the effect, and its fixed parameters."""
-        fixed = ", ".join(f"{name} {value:g}" for name, value in self.fixed)
-        return f"{self.effect} ({fixed})" if fixed else self.effect
 
 
 AFTER = "@after"
@@ -41,12 +34,6 @@ class Explanation:
     def size(self) -> int:
         """Number of changed quantities: each drifted parameter, the changed parameter and each effect count one."""
         return len(self.drifted) + len(self.variants) + (self.changed is not None)
-
-    @property
-    def label(self) -> str:
-        """Label for the user: the quantities that it changes."""
-        change = (f"change of {self.changed}",) if self.changed else ()
-        return " + ".join((*self.drifted, *change, *(variant.label for variant in self.variants))) or "nominal"
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -76,12 +63,6 @@ def jumps(explanation: Explanation) -> bool:
     return any(EFFECT[effect].jumps for effect in explanation.effects)
 
 
-def moments(variant: Variant) -> list[str]:
-    """Dotted names of the moments of an effect that are fitted, in their order."""
-    declared = EFFECT[variant.effect].parameters
-    return [f"{variant.effect}.{each.name}" for each in declared if each.moment and each.name in variant.free]
-
-
 Quantity = str | Variant
 """A drifted or changed parameter, or an effect."""
 
@@ -104,16 +85,3 @@ def without(explanation: Explanation, quantity: Quantity) -> Explanation:
         tuple(variant for variant in explanation.variants if variant != quantity),
         None if explanation.changed == quantity else explanation.changed,
     )
-
-
-def canonical(explanation: Explanation, order: Sequence[str]) -> Explanation | None:
-    """The same explanation with its drifts in this `order`; None where a quantity occurs twice or may not drift."""
-    drifted = tuple(name for name in order if name in explanation.drifted)
-    effects = explanation.effects
-    always = {name.split(".")[0] for name in order if "." in name}
-    if len(drifted) < len(explanation.drifted) or len(set(effects)) < len(effects) or always & set(effects):
-        return None
-    if explanation.changed in drifted:
-        return None
-    variants = tuple(sorted(explanation.variants, key=lambda variant: variant.effect))
-    return Explanation(drifted, variants, explanation.changed)

@@ -108,6 +108,12 @@ class Fit:
         """Number of quantities that it changes."""
         return self.explanation.size
 
+    @property
+    def when(self) -> float:
+        """When the second model takes over [s]; infinite where there is none."""
+        changed = self.explanation.changed
+        return math.inf if changed is None else self.values[changed + WHEN]
+
     @cached_property
     def fitted(self) -> Signal:
         """The residual of the samples that were fitted, without what a coarse converter accounts for."""
@@ -139,7 +145,7 @@ class Fit:
     @cached_property
     def basis(self) -> Signal:
         """Orthonormal basis of what small changes of its values do to the fitted residual, (samples, quantities)."""
-        return np.asarray(np.linalg.qr(self.slopes)[0])
+        return self.solution.basis
 
     @cached_property
     def slopes(self) -> Signal:
@@ -208,18 +214,24 @@ class Fitter:
             own[changed + WHEN],
         )
 
+    def fitted(self, explanation: Explanation, values: Mapping[str, float]) -> Signal:
+        """The residual of the samples that are fitted, as `Fit.fitted`; InputError where no model can have `values`."""
+        return beyond(self.residual(*self.models(explanation, values))[self.data.train], self.data.half_step)
+
+    def left_by(self, fit: Fit) -> Signal:
+        """`residual` of the model of a fit that another fitter may have made."""
+        return self.residual(fit.model, fit.after, fit.when)
+
     def fit(self, explanation: Explanation, values: Mapping[str, float], iterations: int = FULL) -> Fit:
         """The best values of an explanation from some `values` on, others held there, by so many `iterations`."""
-        coordinates, samples = self.coordinates(explanation), self.data.train
-        given = {**self.nominal.values, **values}
-        size = int(np.count_nonzero(samples))
+        coordinates, given = self.coordinates(explanation), {**self.nominal.values, **values}
+        size = int(np.count_nonzero(self.data.train))
 
         def fitted(point: Signal) -> Signal:
             try:
-                left = self.residual(*self.models(explanation, {**given, **coordinates.values(point)}))
+                return self.fitted(explanation, {**given, **coordinates.values(point)})
             except InputError:
                 return np.full(size, UNSIMULATED)
-            return beyond(left[samples], self.data.half_step)
 
         found = minimise(fitted, coordinates.point(given), *coordinates.bounds, coordinates.steps, iterations)
         best = {**given, **explanation.fixed, **coordinates.values(found.point)}
@@ -229,11 +241,10 @@ class Fitter:
 
     def slopes(self, fit: Fit, explanation: Explanation) -> Signal:
         """Derivative of the fitted residual by the coordinates of another `explanation` at the values of `fit`."""
-        coordinates, samples = self.coordinates(explanation), self.data.train
+        coordinates = self.coordinates(explanation)
 
         def fitted(point: Signal) -> Signal:
-            left = self.residual(*self.models(explanation, {**fit.values, **coordinates.values(point)}))
-            return beyond(left[samples], self.data.half_step)
+            return self.fitted(explanation, {**fit.values, **coordinates.values(point)})
 
         point = coordinates.point(fit.values)
         return jacobian(fitted, point, fitted(point), *coordinates.bounds, coordinates.steps)
@@ -254,6 +265,11 @@ def rungs(actuator: Actuator, period: float) -> tuple[float, ...]:
     """The same for an actuator and samples a `period` [s] apart."""
     own = max(actuator.scales.time, SHORTEST_PULL * period)
     return tuple(rung * own for rung in LADDER)
+
+
+def strongest(fitter: Fitter) -> Fitter:
+    """The same fitter with the first pull of the ladder."""
+    return fitter.pulled(ladder(fitter.data)[0])
 
 
 def inertia_time(model: Model) -> float:

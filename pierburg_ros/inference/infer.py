@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.budget import USUAL_BUDGET, Budget
-from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.balance import Balance, balance_of
 from pierburg_ros.inference.choice import Choice, chosen
 from pierburg_ros.inference.data import data_of
 from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.inference.fit import Effort, Fitter, ladder
-from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.search import Progress, Search, aliases, free_parameters, key, searched
 from pierburg_ros.inference.shortlist import Span, forms, independent
 from pierburg_ros.plant import Model
@@ -31,7 +30,7 @@ class Inferred:
 
     choice: Choice
     balance: Balance
-    candidates: list[tuple[Variant, list[dict[str, float]]]]
+    candidates: Sequence[tuple[Variant, list[dict[str, float]]]]
     free: tuple[str, ...]
     drifts: tuple[str, ...]
     effort: Effort
@@ -54,18 +53,17 @@ def infer(
     data = data_of(recordings, nominal)
     data = replace(data, noise=math.hypot(data.noise, unlike))
     first = ladder(data)[0]
-    motions = tuple(motion_of(run, nominal, first) for run in data.runs)
-    balance, free = Balance(data.actuator, motions), free_parameters(nominal)
-    angles = np.concatenate([motion.whole.angle for motion in motions]) / data.scales.angle
+    balance, free = balance_of(data, nominal, first), free_parameters(nominal)
+    angles = np.concatenate([motion.whole.angle for motion in balance.motions]) / data.scales.angle
     span = Span(data.duration / data.scales.time, float(np.min(angles)), float(np.max(angles)))
     effort = Effort(budget)
     fitter = Fitter(data, nominal, first, effort)
     with workers(jobs) as pool:
         base = tuple(name for name in free if "." not in name)
-        search = Search(balance, independent(fitter, balance, base), span, pool, tell)
+        search = Search(balance, independent(fitter, balance, base), forms(data, nominal, span), pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool)
         if len(choice.chosen.explanation.drifted) > 1 and choice.explained:
             own = next(fit for fit in fits if key(fit) == key(choice.chosen))
             choice = chosen([*fits, *aliases(own, search)], free, pool)
-    return Inferred(choice, balance, forms(data, nominal, span), free, search.drifts, effort)
+    return Inferred(choice, balance, search.candidates, free, search.drifts, effort)

@@ -16,7 +16,6 @@ import numpy as np
 from pierburg_ros.arrays import Signal
 from pierburg_ros.inference.coordinates import ABOVE, Coordinates
 from pierburg_ros.inference.covariance import RANK, Spread, spread
-from pierburg_ros.inference.evidence import beyond
 from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fit
 from pierburg_ros.inference.slopes import sharp
@@ -93,8 +92,7 @@ def slopes_at(fit: Fit, explanation: Explanation) -> Signal:
     fitter, coordinates = fit.fitter, fit.fitter.coordinates(explanation)
 
     def fitted(point: Signal) -> Signal:
-        left = fitter.residual(*fitter.models(explanation, {**fit.values, **coordinates.values(point)}))
-        return beyond(left[fitter.data.train], fitter.data.half_step)
+        return fitter.fitted(explanation, {**fit.values, **coordinates.values(point)})
 
     return sharp(fitted, coordinates.point(fit.values), coordinates.bounds)
 
@@ -135,6 +133,6 @@ def _ends(coordinates: Coordinates, point: Signal, name: str, known: Spread) -> 
 def by_run(fit: Fit) -> tuple[Signal, ...]:
     """The fitted residual, one array for each run with samples that were fitted."""
     data = fit.fitter.data
-    parts = np.split(data.train, np.cumsum([run.time.size for run in data.runs])[:-1])
+    parts = data.by_run(data.train)
     ends = np.cumsum([np.count_nonzero(part) for part in parts])[:-1]
     return tuple(part for part in np.split(fit.fitted, ends) if part.size)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from pierburg_ros.arrays import Flags, Signal
 
 Residual = Callable[[Signal], Signal]
-Map = Callable[..., Iterable[Any]]
 
 FULL = 25
 """Number of iterations after which a descent that still gains ends. Work: n = 148 descents took 15 simulations each on
@@ -20,10 +18,6 @@ average, slopes but the last included, and 145 ended within 2 % of the lowest; a
 BRIEF = 8
 """Iterations of a descent that is one of several to choose from; half as many where it starts near its end. Work: a
 descent that is worth more is continued; not varied."""
-AS_FORESEEN = 0.9
-"""Share of the predicted decrease of the cost from which slopes from elsewhere serve for a step. Measured: static
-friction that Coulomb friction can replace gave 0.81 with slopes from a point without static friction, and the step led
-astray (n = 1)."""
 TOLERANCE = 1e-4
 """Share of the cost by which an iteration must lower it for a descent to go on. Derived: for the 22,500 training
 samples of a minute it is 2 of chi2, about what chance gives one quantity."""
@@ -114,9 +108,6 @@ def minimise(
     step: Signal,
     iterations: int = FULL,
     tolerance: float = TOLERANCE,
-    over: Map = map,
-    slopes: Signal | None = None,
-    enough: float = -np.inf,
 ) -> Solution:
     """Least squares of `residual` within bounds from `start`; finite differences of size `step`.
 
@@ -124,15 +115,14 @@ def minimise(
     them, corrected after each step, while the cost falls (the secant version of Levenberg-Marquardt: Madsen, Nielsen,
     Tingleff, Methods for non-linear least squares problems, 2004, section 3.4). The descent ends after so many
     `iterations`, or when one lowers the cost by less than `tolerance` of it. It also ends after a last step if the
-    slopes predict no more than that, when no step lowers the cost, and where the cost is at most `enough`. The damping
-    is Marquardt's: relative to the curvature of each quantity. It is divided by five after a step that lowers the cost,
-    and multiplied faster and faster while steps do not. `over` maps a function over the columns of a Jacobian, on
-    several cores or on one. Known `slopes` from nearby make the first steps, while the cost falls as they predict.
+    slopes predict no more than that, and when no step lowers the cost. The damping is Marquardt's: relative to the
+    curvature of each quantity. It is divided by five after a step that lowers the cost, and multiplied faster and
+    faster while steps do not.
     """
     free = upper > lower
 
     def slope(at: _Place) -> Signal:
-        return jacobian(residual, at.point, at.value, lower, upper, step, over)
+        return jacobian(residual, at.point, at.value, lower, upper, step)
 
     def aim(line: _Tangent, damping: float) -> Signal:
         return _step(line, lower, upper, free, damping)
@@ -141,11 +131,7 @@ def minimise(
         return _Place(point, residual(point))
 
     at, damping = moved(np.clip(start, lower, upper)), 1e-3
-    if slopes is not None:
-        at = _foreseen(moved, aim, at, slopes, tolerance, enough)
     for _ in range(iterations if free.any() else 0):
-        if at.cost <= enough:
-            break
         line, growth, before = _Tangent.at(at, slope(at)), 8.0, at.cost
         last = aim(line, SMALLEST_DAMPING)
         if 0.0 <= line.fall(last) <= tolerance * before:
@@ -159,7 +145,7 @@ def minimise(
         while there.cost < at.cost:
             follows = at.cost - there.cost >= KEPT_SLOPES * line.fall(there.point)
             line, at, damping = line.corrected(there), there, max(damping * 0.2, SMALLEST_DAMPING)
-            if not follows or at.cost <= enough or line.fall(aim(line, SMALLEST_DAMPING)) <= tolerance * at.cost:
+            if not follows or line.fall(aim(line, SMALLEST_DAMPING)) <= tolerance * at.cost:
                 break
             there = moved(aim(line, damping))
         if before - at.cost <= tolerance * before:
@@ -167,9 +153,12 @@ def minimise(
     return Solution(at.point, at.value, lambda: slope(at))
 
 
-def jacobian(
-    residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal, over: Map = map
-) -> Signal:
+def beside(values: Signal, basis: Signal) -> Signal:
+    """What an orthonormal `basis`, shape (samples, vectors), leaves of values or columns, shape (samples, ...)."""
+    return np.asarray(values - basis @ (basis.T @ values))
+
+
+def jacobian(residual: Residual, point: Signal, value: Signal, lower: Signal, upper: Signal, step: Signal) -> Signal:
     """Derivative of `residual`, which is `value` at `point`, by one-sided differences; shape (samples, quantities).
 
     The differences point away from a bound.
@@ -185,29 +174,7 @@ def jacobian(
         moved[place] += signed[place]
         return np.asarray((residual(moved) - value) / signed[place])
 
-    return np.asarray(np.nan_to_num(np.stack(list(over(column, range(point.size))), axis=1)))
-
-
-def _foreseen(
-    moved: Callable[[Signal], _Place],
-    aim: Callable[[_Tangent, float], Signal],
-    at: _Place,
-    slopes: Signal,
-    tolerance: float,
-    enough: float,
-) -> _Place:
-    """The place after steps with the same slopes, while the cost falls as predicted (the simplified Newton method)."""
-    while at.cost > enough:
-        line = _Tangent.at(at, slopes)
-        point = aim(line, SMALLEST_DAMPING)
-        fall = line.fall(point)
-        if fall <= tolerance * at.cost:
-            break
-        there = moved(point)
-        if at.cost - there.cost < AS_FORESEEN * fall:
-            break
-        at = there
-    return at
+    return np.asarray(np.nan_to_num(np.stack(list(map(column, range(point.size))), axis=1)))
 
 
 def _step(line: _Tangent, lower: Signal, upper: Signal, free: Flags, damping: float) -> Signal:

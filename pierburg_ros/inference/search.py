@@ -10,9 +10,9 @@ from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, without
-from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder
+from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.least_squares import BRIEF
-from pierburg_ros.inference.shortlist import Promise, Span, balanced, forms, promises
+from pierburg_ros.inference.shortlist import Promise, balanced, promises
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
@@ -49,7 +49,7 @@ class Search:
 
     balance: Balance
     drifts: tuple[str, ...]
-    span: Span
+    candidates: Sequence[tuple[Variant, list[dict[str, float]]]]
     pool: Executor
     tell: Progress
 
@@ -62,7 +62,7 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
     """
     search.tell("re-estimated parameters")
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
-    candidates, leading = forms(fitter.data, fitter.nominal, search.span), [base]
+    leading = [base]
     found, ended = {key(base)}, followed([base], search.pool)
     with fitter.effort.interruptible():
         for depth in range(1, DEEPEST + 1):
@@ -71,7 +71,7 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
             grown: list[Fit] = []
             for fit in leading:
                 search.tell(f"what could be added to {label(fit)}")
-                promised = promises(fit, search.balance, candidates, search.pool)
+                promised = promises(fit, search.balance, search.candidates, search.pool)
                 grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
                 grown += changed(fit, search) if depth == 1 else []
             new = [fit for fit in best_of_support(grown) if key(fit) not in found]
@@ -98,7 +98,7 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
     """A fit of several effects without each of them in turn: what it was grown from may have been a local minimum."""
     if len(fit.explanation.variants) < 2:
         return []
-    first = fit.fitter.pulled(ladder(fit.fitter.data)[0])
+    first = strongest(fit.fitter)
 
     def one(variant: Variant) -> Fit:
         absent = {f"{variant.effect}.{name}": 0.0 for name in EFFECT[variant.effect].names}
@@ -110,8 +110,7 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
 def aliases(fit: Fit, search: Search) -> list[Fit]:
     """A fit with each effect added that changes of the drifts can make as well: it may need fewer of these."""
     search.tell(f"what equals the drifts beside {label(fit)}")
-    candidates = forms(fit.fitter.data, fit.fitter.nominal, search.span)
-    few = [(variant, starts[:1]) for variant, starts in candidates if EFFECT[variant.effect].ripple is None]
+    few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
     promised = [each for each in promises(fit, search.balance, few, search.pool) if each.own < ALIAS]
     return best_of_support(fits_of(fit, promised, search))
 

@@ -25,7 +25,7 @@ from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fit, Fitter
 from pierburg_ros.inference.intervals import slopes_at
-from pierburg_ros.inference.least_squares import jacobian, minimise
+from pierburg_ros.inference.least_squares import beside, jacobian, minimise
 from pierburg_ros.plant import Model
 
 SCREENED = 4
@@ -84,13 +84,7 @@ def independent(fitter: Fitter, balance: Balance, names: Sequence[str]) -> tuple
     a sensor. Of quantities of which only a ratio shows the last is held: what scales with the others stays as it is.
     """
     nominal = fitter.nominal
-    coordinates = Coordinates(tuple(names), nominal, balance.duration)
-    point = coordinates.point(nominal.values)
-
-    def residual(at: Signal) -> Signal:
-        return balance.residual({**nominal.values, **coordinates.values(at)}, ())
-
-    slopes = jacobian(residual, point, residual(point), *coordinates.bounds, coordinates.steps)
+    _, slopes = sloped(balance, nominal, names, nominal.values, ())
     moving = [names[place] for place in telling(slopes)]
     ordered = (*moving, *(name for name in names if name not in moving))
     simulated = slopes_at(fitter.fit(Explanation(), nominal.values, 0), Explanation(ordered))
@@ -104,8 +98,7 @@ def telling(slopes: Signal) -> list[int]:
     for place in range(slopes.shape[1]):
         column = slopes[:, place]
         if kept:
-            basis = np.linalg.qr(slopes[:, kept])[0]
-            column = column - basis @ (basis.T @ column)
+            column = beside(column, np.linalg.qr(slopes[:, kept])[0])
         if np.linalg.norm(column) > DEPENDENT * np.linalg.norm(slopes[:, place]):
             kept.append(place)
     return kept
@@ -123,10 +116,9 @@ def forms(data: Data, nominal: Model, span: Span) -> list[tuple[Variant, list[di
         if actuator.obstacle(effect) or effect.id in actuator.effects:
             continue
         for each in effect.variants:
-            starts = each.over(span) if each.over else each.starts
-            assert not callable(starts)
             variant = Variant(effect.id, each.free, tuple(each.fixed.items()))
-            found.append((variant, [{**effect.in_units(start, nominal.scales), **each.fixed} for start in starts]))
+            units = (effect.in_units(start, nominal.scales) for start in each.over(span))
+            found.append((variant, [{**start, **each.fixed} for start in units]))
     return found
 
 
@@ -167,6 +159,15 @@ def projected(
     balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], acting: Sequence[str]
 ) -> tuple[Signal, Signal]:
     """Orthonormal basis of what base parameters change in the balance, and the residual beside it."""
+    left, slopes = sloped(balance, nominal, names, values, acting)
+    basis = np.linalg.qr(slopes)[0]
+    return basis, beside(left, basis)
+
+
+def sloped(
+    balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], acting: Sequence[str]
+) -> tuple[Signal, Signal]:
+    """The residual of the balance, shape (samples,), and its derivative by the coordinates of base parameters."""
     coordinates = Coordinates(tuple(names), nominal, balance.duration)
     point = coordinates.point(values)
 
@@ -174,8 +175,7 @@ def projected(
         return balance.residual(in_order({**values, **coordinates.values(at)}, nominal), acting)
 
     left = residual(point)
-    basis = np.linalg.qr(jacobian(residual, point, left, *coordinates.bounds, coordinates.steps))[0]
-    return basis, left - basis @ (basis.T @ left)
+    return left, jacobian(residual, point, left, *coordinates.bounds, coordinates.steps)
 
 
 def _screened(
@@ -188,7 +188,7 @@ def _screened(
 ) -> tuple[float, list[Start]]:
     """The share of the balance's error that starts take which differ in phase alone, and they with their strength."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
-    columns = columns - basis @ (basis.T @ columns)
+    columns = beside(columns, basis)
     scale, fall = _step(columns, left)
     return fall, _scaled(variant.effect, group, scale)
 
@@ -264,9 +264,9 @@ def _promise(fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[s
             return None
         columns.append(fitter.residual(*models)[samples] - before)
     whole = np.stack(columns, axis=1)
-    changed = whole - fit.basis @ (fit.basis.T @ whole)
+    changed = beside(whole, fit.basis)
     own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
-    scale, fall = _step(changed, before - fit.basis @ (fit.basis.T @ before))
+    scale, fall = _step(changed, beside(before, fit.basis))
     start = _scaled(variant.effect, group, scale)[0]
     try:
         at_once = fitter.residual(*fitter.models(fit.explanation, settled))[samples]

@@ -28,18 +28,6 @@ Residual = Callable[[Signal], Signal]
 Bounds = tuple[Signal, Signal]
 
 
-def central(residual: Residual, point: Signal, bounds: Bounds, step: float) -> Signal:
-    """Derivative of `residual` by central differences, one-sided at a bound; shape (samples, quantities)."""
-    ahead = np.minimum(point + step * np.eye(point.size), bounds[1])
-    behind = np.maximum(point - step * np.eye(point.size), bounds[0])
-    distance = np.maximum(np.diagonal(ahead - behind), 1e-300)
-    columns = [
-        (residual(after) - residual(before)) / width
-        for after, before, width in zip(ahead, behind, distance, strict=True)
-    ]
-    return np.stack(columns, axis=1)
-
-
 def sharp(residual: Residual, point: Signal, bounds: Bounds) -> Signal:
     """Derivative of `residual`, shape (samples, quantities), each column by the step with the least bend.
 

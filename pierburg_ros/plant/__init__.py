@@ -3,6 +3,6 @@
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.model_file import read_model
 from pierburg_ros.plant.plant import Plant
-from pierburg_ros.plant.simulate import Inputs, lasting_state, simulate, simulate_many, simulate_switched
+from pierburg_ros.plant.simulate import Inputs, simulate, simulate_many
 
-__all__ = ["Inputs", "Model", "Plant", "lasting_state", "read_model", "simulate", "simulate_many", "simulate_switched"]
+__all__ = ["Inputs", "Model", "Plant", "read_model", "simulate", "simulate_many"]

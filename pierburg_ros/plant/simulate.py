@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.kernel import kernel
 from pierburg_ros.plant.model import Model
@@ -18,8 +17,8 @@ from pierburg_ros.plant.motion.events import settle
 from pierburg_ros.plant.motion.watch import stood
 from pierburg_ros.plant.parameters import NEUTRAL
 from pierburg_ros.plant.signal_path import advance, recall
-from pierburg_ros.plant.state import LOOKAHEAD, blank_state, new_state, place
-from pierburg_ros.plant.torques.sensor import read_all, show
+from pierburg_ros.plant.state import LOOKAHEAD, blank_state, place
+from pierburg_ros.plant.torques.sensor import read_all
 from pierburg_ros.workers import workers
 
 LONG_BEFORE = 1e9
@@ -78,35 +77,18 @@ def simulate(
     initial_velocity: float = 0.0,
     initial_acceleration: float = 0.0,
     came: float = 0.0,
-    lasting: np.ndarray | None = None,
 ) -> Signal:
     """Measured quantity (V, or rad where the angle is measured) at `sample_times` [s], shape (samples,).
 
     No noise. The run starts at the first sample, at `initial_angle` [rad] with `initial_velocity` [rad/s], a sensor
     with a lag as after an even `initial_acceleration` [rad/s^2], one with play as after motion that `came` opening (+1)
-    or closing (-1) where the shaft stands. It starts cold unless `lasting` says otherwise (`lasting_state`). Loads go
-    by the time of the samples, and a command from before the first one is under way. Not a number from where a
-    parameter set cannot be simulated.
+    or closing (-1) where the shaft stands. It starts cold. Loads go by the time of the samples, and a command from
+    before the first one is under way. Not a number from where a parameter set cannot be simulated.
     """
     times = _increasing(sample_times)
     output = np.empty(times.size)
-    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration, came, lasting)
+    _run_into(output, model, inputs, times, initial_angle, initial_velocity, initial_acceleration, came)
     return output
-
-
-def lasting_state(model: Model, inputs: Inputs, first: float, last: float, *start: float) -> np.ndarray:
-    """State record, shape (1,), blank but for what lasts, such as heat: as a run from `first` leaves it at `last` [s].
-
-    It starts as `new_state` has it.
-    """
-    blank = blank_state()
-    effects = [effect for effect in model.active_effects if EFFECT[effect].memory == "lasting"]
-    if effects:
-        state = _begun(model, inputs, first, *start)
-        _continue_into(np.empty(2), model, state, inputs, np.array([first, last]))
-        for effect in effects:
-            blank[effect] = state[effect]
-    return blank
 
 
 def motor_torque(model: Model, inputs: Inputs, time: ArrayLike, velocity: ArrayLike = 0.0) -> Signal:
@@ -147,33 +129,6 @@ def refuse_unsimulated(model: Model, simulated: Signal, times: Signal) -> None:
         )
 
 
-def simulate_switched(
-    model: Model,
-    after: Model,
-    switch_time: float,
-    inputs: Inputs,
-    sample_times: ArrayLike,
-    initial_angle: float = 0.0,
-    initial_velocity: float = 0.0,
-    initial_acceleration: float = 0.0,
-    came: float = 0.0,
-    lasting: np.ndarray | None = None,
-) -> Signal:
-    """`simulate` of `model`, with `after` taking over the running state at the first sample from `switch_time` [s] on.
-
-    So does a plant whose parameters change: they act from its next tick.
-    """
-    times = _increasing(sample_times)
-    output = np.empty(times.size)
-    split = int(np.searchsorted(times, switch_time))
-    start = (initial_angle, initial_velocity, initial_acceleration, came)
-    state = _begun(model, inputs, times[0], *start, lasting=lasting)
-    for part, first, last in ((model, 0, min(split + 1, times.size)), (after, split, times.size)):
-        if last > first:
-            _continue_into(output[first:last], part, state, inputs, times[first:last])
-    return output
-
-
 def simulate_many(
     models: Sequence[Model],
     inputs: Inputs,
@@ -194,29 +149,6 @@ def simulate_many(
     return output
 
 
-def simulate_stretches(
-    model: Model,
-    inputs: Inputs,
-    sample_times: ArrayLike,
-    first: NDArray[np.int64],
-    starts: Signal,
-    lagged: Signal | None = None,
-) -> Signal:
-    """`simulate` in stretches that begin at the samples `first`, each from its own start.
-
-    `starts`, shape (stretches, 4), are what `simulate` begins with: angle [rad], velocity [rad/s], acceleration
-    [rad/s^2] and how it came. `lagged`, shape (stretches,), is what a slow sensor shows there [rad, of a velocity
-    rad/s], if not what follows from these.
-    """
-    times = _increasing(sample_times, first)
-    output = np.empty(times.size)
-    state = blank_state()
-    shown = np.full(first.size, np.nan) if lagged is None else lagged
-    content = state.view(np.uint8)
-    run_stretches(model.record()[0], state[0], content, *channels(inputs), times, first, starts, shown, output)
-    return output
-
-
 def _run_into(
     output: Signal,
     model: Model,
@@ -226,22 +158,10 @@ def _run_into(
     velocity: float,
     acceleration: float = 0.0,
     came: float = 0.0,
-    lasting: np.ndarray | None = None,
 ) -> None:
-    state = blank_state(lasting)
+    state = blank_state()
     start = float(angle), float(velocity), float(acceleration), float(came)
     run_from(model.record()[0], state[0], *channels(inputs), times, *start, output)
-
-
-def _begun(model: Model, inputs: Inputs, time: float, *start: float, lasting: np.ndarray | None = None) -> np.ndarray:
-    """State record, shape (1,), at `time` [s] as `new_state` has it, with the inputs from before it under way."""
-    state = new_state(model.record(), *start, lasting=lasting)
-    begin(model.record()[0], state[0], *channels(inputs), time)
-    return state
-
-
-def _continue_into(output: Signal, model: Model, state: np.ndarray, inputs: Inputs, times: Signal) -> None:
-    run(model.record()[0], state[0], *channels(inputs), times, output)
 
 
 def channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]:
@@ -251,27 +171,23 @@ def channels(inputs: Inputs) -> tuple[Signal, Signal, Signal, NDArray[np.bool_]]
     return inputs.time, inputs.command, supply, enabled
 
 
-def _increasing(sample_times: ArrayLike, first: NDArray[np.int64] | None = None) -> Signal:
-    """The sample times, if they increase from each `first` sample to the next; InputError otherwise."""
+def _increasing(sample_times: ArrayLike) -> Signal:
+    """The sample times, if they increase; InputError otherwise."""
     times = np.ascontiguousarray(sample_times, dtype=float)
-    if times.ndim != 1 or times.size == 0 or not _increase(times, _WHOLE if first is None else first):
+    if times.ndim != 1 or times.size == 0 or not _increase(times):
         raise InputError("The sample times are empty or do not increase; expected increasing times. Sort them.")
     return times
 
 
-_WHOLE = np.zeros(1, dtype=np.int64)
 _NOTHING = np.empty(0)
 _ALWAYS = np.empty(0, dtype=bool)
 
 
 @kernel
-def _increase(times, first):
-    """Whether `times`, one or more, are finite and from each sample that is `first` on later than the one before."""
-    stretch = 1
+def _increase(times):
+    """Whether `times`, one or more, are finite and each later than the one before."""
     for index in range(1, times.size):
-        if stretch < first.size and index == first[stretch]:
-            stretch += 1
-        elif not times[index] > times[index - 1]:
+        if not times[index] > times[index - 1]:
             return False
     return np.isfinite(times[0]) and np.isfinite(times[-1])
 
@@ -292,27 +208,10 @@ def begin(p, s, input_times, command, supply_voltage, enabled, time):
 def run_from(
     p, s, input_times, command, supply_voltage, enabled, sample_times, angle, velocity, acceleration, came, output
 ):
-    """`run` from where `place` puts `s` at the first sample; `s` is all zeros but for what lasts."""
+    """`run` from where `place` puts `s` at the first sample; `s` is all zeros."""
     place(p, s, angle, velocity, acceleration, came)
     begin(p, s, input_times, command, supply_voltage, enabled, sample_times[0])
     run(p, s, input_times, command, supply_voltage, enabled, sample_times, output)
-
-
-@kernel
-def run_stretches(
-    p, s, content, input_times, command, supply_voltage, enabled, sample_times, first, starts, lagged, output
-):
-    """`run` from each of the samples `first` to the next, from its own start; `content` are the bytes of `s`."""
-    for stretch in range(first.size):
-        end = first[stretch + 1] if stretch + 1 < first.size else sample_times.size
-        times, part = sample_times[first[stretch] : end], output[first[stretch] : end]
-        angle, velocity, acceleration, came = starts[stretch]
-        content[:] = 0
-        place(p, s, angle, velocity, acceleration, came)
-        if not math.isnan(lagged[stretch]):
-            show(s, lagged[stretch])
-        begin(p, s, input_times, command, supply_voltage, enabled, times[0])
-        run(p, s, input_times, command, supply_voltage, enabled, times, part)
 
 
 @kernel

@@ -83,29 +83,19 @@ STATE = np.dtype(
 """What a plant remembers; `s.<effect>.<name>` are the states that effects declare, all 0 at the start."""
 
 
-def new_state(
-    record: np.ndarray,
-    angle: float = 0.0,
-    velocity: float = 0.0,
-    acceleration: float = 0.0,
-    came: float = 0.0,
-    *,
-    lasting: np.ndarray | None = None,
-) -> np.ndarray:
-    """State record, shape (1,), of an actuator at `angle` [rad] with `velocity` [rad/s], no current.
+def new_state(record: np.ndarray, angle: float = 0.0, velocity: float = 0.0) -> np.ndarray:
+    """State record, shape (1,), of a cold actuator at `angle` [rad] with `velocity` [rad/s], no current.
 
-    Cold, unless `lasting` is a record that is blank but for what lasts.
-
-    Its sensor is as after motion with an even `acceleration` [rad/s^2], or one that has ended: see `place`.
+    Its sensor is as after motion that has ended: see `place`.
     """
-    state = blank_state(lasting)
-    place(record[0], state[0], angle, velocity, acceleration, came)
+    state = blank_state()
+    place(record[0], state[0], angle, velocity, 0.0, 0.0)
     return state
 
 
-def blank_state(lasting: np.ndarray | None = None) -> np.ndarray:
-    """State record, shape (1,), all zeros but for what is `lasting`; a copy of that."""
-    return np.zeros(1, STATE) if lasting is None else lasting.copy()
+def blank_state() -> np.ndarray:
+    """State record, shape (1,), all zeros."""
+    return np.zeros(1, STATE)
 
 
 @kernel

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.recordings import NOISE, NOMINAL, disturbed, recording
+from support.recordings import NOISE, NOMINAL, changing, disturbed, recording
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.budget import Budget
@@ -16,7 +16,6 @@ from pierburg_ros.diagnosis.result import Result
 from pierburg_ros.diagnosis.schema import Diagnosis
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model
-from pierburg_ros.plant.simulate import simulate_switched
 from pierburg_ros.recording import Channel, Recording
 
 STUCK = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}
@@ -28,7 +27,7 @@ def changed() -> Recording:
     whole = recording({}, 18.0)
     inputs = Inputs(whole.command.time, whole.command.values)
     after = NOMINAL.with_values({"armature_resistance": 5.0})
-    volts = simulate_switched(NOMINAL, after, CHANGED_AT, inputs, whole.time)
+    volts = changing(NOMINAL, after, CHANGED_AT, inputs, whole.time)
     return replace(whole, measured=volts + NOISE * np.random.default_rng(1).standard_normal(volts.size))
 
 

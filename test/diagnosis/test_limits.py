@@ -11,6 +11,7 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.diagnosis.found import doubtful
 from pierburg_ros.diagnosis.limits import ONE_SIDED, SETTLED, WIDENED, seen
+from pierburg_ros.inference.choice import Choice
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fitter, ladder
 
@@ -107,9 +108,8 @@ def test_an_effect_of_the_fit_has_no_limit():
 
 
 def test_what_is_doubted_or_tied_has_no_limit():
-    choice = SimpleNamespace(
-        doubted={"backlash": None}, ties={"viscous_friction": (("sensor_lag", "torque_constant"),)}
-    )
+    ties = SimpleNamespace(ties={"viscous_friction": (("sensor_lag", "torque_constant"),)})
+    choice = SimpleNamespace(doubted={"backlash": None}, alternatives=Choice.alternatives.fget(ties))
     stated = [doubtful(choice, Variant(effect, ("x",))) for effect in ("backlash", "sensor_lag", "supply_sag")]
     assert stated == [True, True, False]
 

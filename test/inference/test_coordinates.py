@@ -24,7 +24,7 @@ DIFFERENCE = "direction_dependent_friction.viscous_difference"
 
 
 @pytest.mark.parametrize(
-    ("variant", "starts"), [pytest.param(*each, id=f"{each[0].label}-{each[0].free[0]}") for each in STARTS]
+    ("variant", "starts"), [pytest.param(*each, id=f"{each[0].effect}-{each[0].free[0]}") for each in STARTS]
 )
 def test_values_survive_the_way_through_coordinates(variant: Variant, starts: list[Start]) -> None:
     names = tuple(f"{variant.effect}.{name}" for name in variant.free)

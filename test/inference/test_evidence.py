@@ -8,7 +8,6 @@ from pierburg_ros.inference.evidence import (
     beyond,
     certainty,
     coarse_step,
-    gain,
     grid,
     lasting_rounding,
     probability,
@@ -28,10 +27,6 @@ def test_a_sample_of_correlated_noise_counts_less():
     # of a first-order process with coefficient a, (1 + a) / (1 - a) samples count as one
     slow = lfilter([1.0], [1.0, -0.8], WHITE)
     assert repetition(slow) == pytest.approx(9.0, rel=0.2)
-
-
-def test_the_gain_is_the_log_likelihood_of_white_noise_of_unknown_size():
-    assert gain(1.1 * WHITE, WHITE) == pytest.approx(WHITE.size * 2.0 * np.log(1.1), rel=0.1)
 
 
 def test_half_the_blocks_better_and_half_worse_is_not_sure():

@@ -102,34 +102,9 @@ def linear_problem():
     return residual, matrix, least, asked
 
 
-def test_known_slopes_lead_to_the_minimum_without_differences() -> None:
-    residual, matrix, least, asked = linear_problem()
-    far = np.full(2, 10.0)
-    solution = minimise(residual, np.zeros(2), -far, far, STEP, 0, slopes=matrix)
-    assert abs(solution.cost - least) < 1e-9
-    assert len(asked) == 2
-
-
-def test_slopes_that_foresee_another_cost_are_not_followed() -> None:
-    residual, matrix, least, _ = linear_problem()
-    far = np.full(2, 10.0)
-    assert np.array_equal(minimise(residual, np.zeros(2), -far, far, STEP, 0, slopes=2.0 * matrix).point, np.zeros(2))
-    assert abs(minimise(residual, np.zeros(2), -far, far, STEP, slopes=2.0 * matrix).cost - least) < 1e-3
-
-
-def test_a_cost_that_is_enough_ends_the_descent() -> None:
-    residual, _, least, asked = linear_problem()
-    far, start = np.full(2, 10.0), np.array([5.0, 5.0])
-    first = minimise(residual, start, -far, far, STEP, 1).cost
-    asked.clear()
-    assert minimise(residual, start, -far, far, STEP, enough=1.01 * first, tolerance=0.0).cost == first > least
-    assert len(asked) == 4
-
-
 def test_quantities_that_are_not_told_apart_are_solved_for() -> None:
     residual, matrix, _, _ = linear_problem()
-    twice = np.column_stack([matrix[:, 0], matrix[:, 0], np.zeros(40)])
     far, step = np.full(3, 10.0), np.full(3, 1e-5)
-    solution = minimise(lambda x: residual(np.array([x[0] + x[1], 0.0])), np.zeros(3), -far, far, step, 0, slopes=twice)
+    solution = minimise(lambda x: residual(np.array([x[0] + x[1], 0.0])), np.zeros(3), -far, far, step)
     rest = np.linalg.lstsq(matrix[:, :1], -residual(np.zeros(2)), rcond=None)[1][0]
     assert abs(solution.cost - rest) < 1e-6

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from pierburg_ros.actuators import actuator_of, read_actuator
 from pierburg_ros.errors import InputError
 from pierburg_ros.plant import Inputs, Model, simulate
-from pierburg_ros.plant.simulate import motor_torque, simulate_stretches
+from pierburg_ros.plant.simulate import motor_torque
 
 ROTOR = Model.nominal(read_actuator("odrive"))
 PENDULUM = Model.nominal(read_actuator("ak80"))
@@ -123,17 +123,6 @@ def test_a_speed_sensor_shows_the_velocity_with_scale_offset_and_lag() -> None:
     assert np.abs(late - lagged).max() < 1e-6
     stepped = simulate(model.with_values({"sensor_quantization.step": 0.1}), steady, TIME)
     assert np.abs(stepped / 0.1 - np.round(stepped / 0.1)).max() < 1e-9
-
-
-def test_stretches_begin_where_they_are_told_and_go_on_alike() -> None:
-    command = np.sin(5.0 * TIME)
-    inputs = Inputs(TIME, command)
-    whole = simulate(PENDULUM, inputs, TIME, 0.4, -1.0)
-    first = np.array([0, 300])
-    starts = np.array([[0.4, -1.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0]])
-    cut = simulate_stretches(PENDULUM, inputs, TIME, first, starts, starts[:, 0])
-    assert np.array_equal(cut[:300], whole[:300])
-    assert np.array_equal(cut[300:], simulate(PENDULUM, inputs, TIME[300:], 1.0, 2.0))
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from independent.excitation import rich_duty
+from support.recordings import changing
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.plant import Inputs, Model, Plant, simulate, simulate_switched
+from pierburg_ros.plant import Inputs, Model, Plant, simulate
 
 NOMINAL = Model.nominal(read_actuator("pierburg"))
 LATE = NOMINAL.with_values({"input_delay.delay": 0.013, "sensor_lag.time_constant": 0.01})
@@ -58,7 +59,7 @@ def test_model_changes_within_a_run_at_its_time() -> None:
     after = NOMINAL.with_values({"armature_resistance": 5.0})
     moving = int(np.argmax(np.abs(np.diff(simulate(NOMINAL, Inputs(time, duty), time)))))
     when = 0.5 * float(time[moving - 1] + time[moving])
-    switched = simulate_switched(NOMINAL, after, when, Inputs(time, duty), time)
+    switched = changing(NOMINAL, after, when, Inputs(time, duty), time)
     plant = Plant(NOMINAL)
     expected = []
     for k in range(time.size):

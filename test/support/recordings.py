@@ -9,6 +9,7 @@ from pierburg_ros.closed_loop import simulate_runs
 from pierburg_ros.control import Settings
 from pierburg_ros.inference.data import Data, data_of
 from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.plant.following import Pull, follow
 from pierburg_ros.recording import Channel, Recording
 
 PIERBURG = read_actuator("pierburg")
@@ -75,3 +76,9 @@ def disturbed(changes: dict[str, float], seed: int) -> Recording:
     wave = np.interp(clean.time, knots, random.normal(0.0, 10.0 * NOISE, knots.size))
     wave[clean.time < 0.5] = 0.0
     return replace(clean, measured=clean.measured + wave)
+
+
+def changing(model: Model, after: Model, when: float, inputs: Inputs, time: np.ndarray) -> np.ndarray:
+    """The simulation of a model that another one takes over from `when` [s], pulled by nothing."""
+    nothing = np.zeros(time.size)
+    return follow(model, inputs, time, nothing, np.zeros(4), Pull.every(time, np.inf, False), 1.0, after, when)

@@ -34,6 +34,14 @@ class Cleaned:
     omissions: tuple[Omission, ...] = ()
     remarks: tuple[str, ...] = ()
 
+    @property
+    def left_out(self) -> list[tuple[float, float, str]]:
+        """Spans, from the first sample [s], that no model is compared with, each with the reason."""
+        first = float(self.recording.time[0])
+        unknown = [(*span, "the input is unknown there") for span in self.recording.unknown_input]
+        spans = (*unknown, *((*omission.span, omission.why) for omission in self.omissions))
+        return [(start - first, end - first, why) for start, end, why in spans]
+
 
 def cleaned(recording: Recording, number: int = 0) -> Cleaned:
     """`recording` without outliers, without samples at the end of the converter's range, and without mains hum."""

@@ -16,7 +16,7 @@ from pierburg_ros.actuators.wording import place, travel_factor, travel_title
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.found import Found
 from pierburg_ros.diagnosis.motion import motion_of
-from pierburg_ros.diagnosis.remains import Lacking, lacking
+from pierburg_ros.diagnosis.remains import Lacking
 from pierburg_ros.diagnosis.result import Characteristic, Points
 from pierburg_ros.effects import EFFECTS
 from pierburg_ros.plant import Model
@@ -37,9 +37,9 @@ def characteristics(found: Found) -> tuple[Characteristic, ...]:
         return ()
     choice = found.choice
     models = {"nominal": choice.described.model, "recalibrated": choice.estimated.model, "final": found.model}
-    at, run = lacking(found.written, found.inferred.balance), found.data.runs[0]
+    at, run = found.lacking_of_written, found.data.runs[0]
     motion = motion_of(run, found.data.actuator, found.data.noise)
-    residual = found.of_run(found.residual(found.written), run) * found.data.per_unit
+    residual = found.data.by_run(found.errors["final"])[0] * found.data.per_unit
     laws = [_friction(models, at), _load(models, at, motion.angle), _sensor(models, motion.angle, residual)]
     return (*laws, *_plays(found.model))
 

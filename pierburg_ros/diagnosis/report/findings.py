@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.gauge import in_ratio
 from pierburg_ros.arrays import Flags, Signal
@@ -19,7 +17,7 @@ from pierburg_ros.diagnosis.location.regimes import regimes
 from pierburg_ros.diagnosis.location.windows import SHORTEST_LOCATION, windows
 from pierburg_ros.diagnosis.motion import motion_of
 from pierburg_ros.diagnosis.report import words
-from pierburg_ros.diagnosis.report.tried import identifier, statuses
+from pierburg_ros.diagnosis.report.tried import identifier, rms_or_none, statuses
 from pierburg_ros.diagnosis.schema import (
     BaseParameter,
     Candidate,
@@ -42,10 +40,10 @@ from pierburg_ros.diagnosis.schema import (
     Verdict,
 )
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
-from pierburg_ros.inference.choice import Name, Score, strongest, taken
+from pierburg_ros.inference.choice import Name, Score, taken
 from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.inference.explanation import AFTER, WHEN
-from pierburg_ros.inference.fit import Fit, rms_of
+from pierburg_ros.inference.fit import Fit, rms_of, strongest
 
 HORIZONS = (0.1, 0.3, 1.0, 3.0)
 """Times over which a model predicts [s]. Given: the times that the report promises."""
@@ -168,9 +166,10 @@ def doubted(found: Found) -> list[Doubted]:
 
 def worth_telling(found: Found) -> dict[str, Name]:
     """The doubted effects that anyone would want to know of."""
-    tied = {name for several in found.choice.ties.values() for names in several for name in names}
     return {
-        effect: name for effect, name in found.choice.doubted.items() if name.confidence > 0.01 and effect not in tied
+        effect: name
+        for effect, name in found.choice.doubted.items()
+        if name.confidence > 0.01 and effect not in found.choice.alternatives
     }
 
 
@@ -247,11 +246,10 @@ def changes(found: Found) -> list[Change]:
 
 def fit_quality(found: Found) -> FitQuality:
     """Errors before and after, on samples that were fitted, and on samples that neither fit nor choice has used."""
-    data, choice = found.data, found.choice
-    errors = [found.residual(fit) for fit in (choice.described, choice.estimated, found.written)]
+    data = found.data
 
     def on(samples: Flags) -> Errors:
-        nominal, recalibrated, final = (rms(each[samples]) for each in errors)
+        nominal, recalibrated, final = (rms_or_none(each[samples]) for each in found.errors.values())
         return Errors(nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final)
 
     return FitQuality(
@@ -267,18 +265,10 @@ def horizons(found: Found) -> list[Horizon]:
     listed, data = [], found.data
     for after in (*HORIZONS, math.inf):
         fitter = found.written.fitter.pulled(after)
-        errors = []
-        for fit in (found.choice.described, found.choice.estimated, found.written):
-            when = fit.fitter.models(fit.explanation, fit.values)[2]
-            errors.append(rms(fitter.residual(fit.model, fit.after, when)[data.test] * data.noise))
-        nominal, recalibrated, final = errors
+        models = (found.choice.described, found.choice.estimated, found.written)
+        nominal, recalibrated, final = (rms_or_none(fitter.left_by(fit)[data.test] * data.noise) for fit in models)
         listed.append(Horizon(after=after, nominal_rmse=nominal, recalibrated_rmse=recalibrated, final_rmse=final))
     return listed
-
-
-def rms(residual: Signal) -> float | None:
-    """Root mean square; None where there are no samples."""
-    return float(np.sqrt(np.mean(np.square(residual)))) if residual.size else None
 
 
 def candidates(found: Found) -> list[Candidate]:
@@ -337,13 +327,11 @@ def remaining(found: Found) -> Remaining:
 
 def excluded(cleaned: Sequence[Cleaned]) -> list[Excluded]:
     """The spans of every recording that were left out."""
-    listed = []
-    for each in cleaned:
-        name, first = each.recording.name, float(each.recording.time[0])
-        unknown = [(start, end, "the input is unknown there") for start, end in each.recording.unknown_input]
-        for start, end, why in (*unknown, *((*omission.span, omission.why) for omission in each.omissions)):
-            listed.append(Excluded(start=start - first, end=end - first, why=f"{name}: {why}"))
-    return listed
+    return [
+        Excluded(start=start, end=end, why=f"{each.recording.name}: {why}")
+        for each in cleaned
+        for start, end, why in each.left_out
+    ]
 
 
 def cannot_act(actuator: Actuator) -> list[CannotAct]:
@@ -362,7 +350,7 @@ def located(found: Found) -> tuple[list[Location], list[Regime]]:
     run, own = found.data.runs[0], found.choice.estimated
     motion = motion_of(run, found.data.actuator, found.data.noise)
     near = strongest(own.fitter).residual(own.model) * found.data.noise
-    residual = found.of_run(near, run)
+    residual = found.data.by_run(near)[0]
     shortest = SHORTEST_LOCATION * found.data.scales.time
     placed = windows(motion.time, residual**2, shortest=shortest) if motion.time[-1] > 2.0 * shortest else []
     return locations(motion, residual, placed), regimes(motion, residual)
@@ -370,7 +358,6 @@ def located(found: Found) -> tuple[list[Location], list[Regime]]:
 
 def signals(found: Found) -> dict[str, Signal]:
     """Time [s], measured, command, and the simulations of the first recording by the three models, each (samples,)."""
-    run, choice = found.data.runs[0], found.choice
-    models = {"nominal": choice.described, "recalibrated": choice.estimated, "final": found.written}
-    simulated = {key: run.measured - found.of_run(found.residual(fit), run) for key, fit in models.items()}
+    run = found.data.runs[0]
+    simulated = {key: run.measured - found.data.by_run(error)[0] for key, error in found.errors.items()}
     return {"time": run.time, "measured": run.measured, "command": run.in_force, **simulated}

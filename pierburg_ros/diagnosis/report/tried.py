@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.found import Found
 from pierburg_ros.diagnosis.result import Tried
 from pierburg_ros.diagnosis.schema import Status
 from pierburg_ros.inference.choice import Score
+from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import WHEN, quantities
 from pierburg_ros.inference.fit import Fit, adequate
 from pierburg_ros.pages.numbers import words
@@ -56,37 +55,44 @@ def statuses(found: Found) -> dict[str, Status]:
     return {**result, identifier(choice.handed): "chosen"}
 
 
-def rivals(found: Found) -> list[tuple[Tried, Fit]]:
-    """The model that is handed out, and all other explanations that were fitted, the best first."""
-    choice, status = found.choice, statuses(found)
-    handed, listed = found.written, {identifier(choice.handed): choice.handed}
-    for fit in sorted(choice.fits, key=lambda fit: fit.chi2):
-        listed.setdefault(identifier(fit), fit)
+def rivals(found: Found) -> list[tuple[Tried, Signal]]:
+    """The model that is handed out and all other explanations, the best first, with what each leaves over all runs."""
+    choice, status, handed = found.choice, statuses(found), found.written
     score = Score.of(choice.fits)
 
-    def row(fit: Fit, name: str, how: Status, key: str) -> Tried:
-        data, residual = found.data, found.residual(fit)
-        unseen = residual[data.test]
+    def row(fit: Fit, name: str, how: Status, key: str) -> tuple[Tried, Signal]:
+        residual = found.errors["final"] if fit is handed else found.residual(fit)
         lack = score.lack(fit.chi2) - score.lack(choice.handed.chi2)
-        return Tried(name, fit.size, how, rms(residual[data.train]), rms(unseen) if unseen.size else None, lack, key)
+        return tried(found, residual, name, fit.size, how, lack, key), residual
 
     own = shortened(choice.handed, choice.estimated)
-    rows = [(row(choice.handed, own, "chosen", "final" if handed is choice.handed else "chosen"), choice.handed)]
+    rows = [row(choice.handed, own, "chosen", "final" if handed is choice.handed else "chosen")]
     if handed is not choice.handed:
         name = shortened(handed, choice.estimated)
         shaped = f"{name}+{SHAPE}" if handed.model.residual_torque is not None else name
-        rows.insert(0, (row(handed, shaped, "rejected", "final"), handed))
-    others = [fit for fit in listed.values() if fit is not choice.handed and fit is not handed]
-    for place, fit in enumerate(others):
-        name = identifier(fit)
-        rows.append((row(fit, name, status[name], f"rival-{place}" if place < DRAWN else ""), fit))
+        rows.insert(0, row(handed, shaped, "rejected", "final"))
+    listed = {identifier(choice.handed): choice.handed}
+    for fit in sorted(choice.fits, key=lambda fit: fit.chi2):
+        listed.setdefault(identifier(fit), fit)
+    others = [(name, fit) for name, fit in listed.items() if fit is not choice.handed and fit is not handed]
+    rows += [
+        row(fit, name, status[name], f"rival-{place}" if place < DRAWN else "")
+        for place, (name, fit) in enumerate(others)
+    ]
     return rows
+
+
+def tried(found: Found, residual: Signal, name: str, size: int, how: Status, lack: float, key: str) -> Tried:
+    """A row on a model that leaves a `residual` [measured unit] over all runs."""
+    data = found.data
+    training = rms(residual[data.train])
+    return Tried(name, size, how, training, rms_or_none(residual[data.test]), lack, key)
+
+
+def rms_or_none(residual: Signal) -> float | None:
+    """Root mean square; None where there are no samples."""
+    return rms(residual) if residual.size else None
 
 
 SHAPE = "map_of_the_missing_torque"
 """Name of what is added to an explanation as a torque over angle and velocity."""
-
-
-def rms(residual: Signal) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(np.square(residual))))

@@ -66,18 +66,17 @@ class RecordedTime:
             if time is None:
                 self._held |= {each.topic.name: each} if each.topic.lasts else {}
                 continue
-            if each.topic.name == CLOCK and self._goes_back(each):
+            if each.topic.name == CLOCK and self._goes_back(each.sent, time):
                 found.append([])
             found[-1] += [(held, time, time) for held in (*self._held.values(), each)]
             self._held.clear()
         return found
 
-    def _goes_back(self, clock: Received) -> bool:
-        """Whether a `/clock` that was sent later than all before it reads less: what is only late goes back nowhere."""
-        if clock.sent < self._newest:
+    def _goes_back(self, sent: int, time: int) -> bool:
+        """Whether the `/clock` in force when a later one was `sent` [ns] reads less: what is only late goes nowhere."""
+        if sent < self._newest:
             return False
-        reading = messages.nanoseconds(deserialize_message(clock.data, ClockMessage).clock)
-        back, self._latest, self._newest = reading < self._latest, reading, clock.sent
+        back, self._latest, self._newest = time < self._latest, time, sent
         now = monotonic()
         if not back or now - self._jumped < FILES_APART:
             return False

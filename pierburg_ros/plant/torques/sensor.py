@@ -29,12 +29,6 @@ def trail(p):
 
 
 @kernel
-def show(s, shown):
-    """Let a slow sensor show what it would of a shaft that stands at `shown` [rad], or turns so fast [rad/s]."""
-    s.sensor_lag.lagged = shown
-
-
-@kernel
 def follow(p, s, duration):
     """Let the moving parts of the sensor follow the shaft, which has gone one way for `duration` [s]."""
     true = sensed(p, s)

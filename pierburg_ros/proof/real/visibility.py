@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from pierburg_ros.inference.balance import Balance
+from pierburg_ros.inference.balance import balance_of
 from pierburg_ros.inference.data import all_fitted
 from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
-from pierburg_ros.inference.fit import Fitter, ladder
+from pierburg_ros.inference.fit import Fitter, strongest
 from pierburg_ros.inference.least_squares import BRIEF
-from pierburg_ros.inference.motion import motion_of
 from pierburg_ros.inference.replay import parts_of, pull_of
 from pierburg_ros.inference.search import free_parameters
 from pierburg_ros.inference.shortlist import independent
@@ -52,15 +49,14 @@ def visibility(recording: Recording, model: Model, changed: Model, name: str) ->
     """
     data = all_fitted(parts_of(recording, model.actuator), model)
     fitter = Fitter(data, model, pull_of(model.actuator, data.period))
-    ends = np.cumsum([run.time.size for run in data.runs])[:-1]
-    lefts = np.split(fitter.residual(changed) * data.noise, ends)
+    lefts = data.by_run(fitter.residual(changed) * data.noise)
     runs = [replace(run, measured=run.measured - left) for run, left in zip(data.runs, lefts, strict=True)]
     put_in = replace(fitter, data=replace(data, runs=tuple(runs)))
     drifts = tuple(each for each in free_parameters(model) if each != name)
     nearest = min(put_in.fit(Explanation((drift,)), model.values, BRIEF).chi2 for drift in drifts)
     remains = fitter.fit(Explanation(), model.values, 0)
-    balance = Balance(data.actuator, tuple(motion_of(run, model, ladder(data)[0]) for run in data.runs))
-    told = independent(fitter.pulled(ladder(data)[0]), balance, drifts)
+    first = strongest(fitter)
+    told = independent(first, balance_of(data, model, first.constant), drifts)
     distance = nearest / max(remains.ratio**2 * remains.repetition, 1.0)
     return Visibility(distance, _left(put_in, told), _left(fitter, told))
 
