@@ -102,6 +102,11 @@ class Actuator:
         """Whether anything ends its travel."""
         return math.isfinite(self.lower_stop) or math.isfinite(self.upper_stop)
 
+    @property
+    def forgets(self) -> bool:
+        """Whether it forgets its initial state: a spring or a closed bridge brings it back."""
+        return self.load == "spring" or self.drive == "voltage"
+
     def obstacle(self, effect: Effect) -> str:
         """Why `effect` cannot act in this actuator, in words; nothing where it can."""
         return effect.obstacle(self.drive, self.load, self.quantity, self.has_stops)

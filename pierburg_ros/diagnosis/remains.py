@@ -39,8 +39,9 @@ class Lacking:
     """The load torque [N.m] that a model lacks along all motions, positive closes, each shape (samples,).
 
     `torque` is with the parameters that the balance would have, `own` with those of the fit; angle [rad], 0 where
-    only a speed is measured, velocity [rad/s], time [s] and motor torque [N.m] are beside it. Columns of `basis` are
-    what parameters could make of it. `turns`: the shaft goes round.
+    only a speed is measured, velocity [rad/s] and time [s] are beside it, and as `load` [N.m] what the model itself
+    asks of the motor, without the missing torque. Columns of `basis` are what parameters could make of it. `turns`: the
+    shaft goes round.
     """
 
     torque: Signal
@@ -61,7 +62,7 @@ class Lacking:
 def lacking(fit: Fit, balance: Balance) -> Lacking:
     """The torque that a `fit` lacks, its parameters as the balance would have them beside its effects."""
     nominal, actuator, acting = fit.fitter.nominal, fit.fitter.data.actuator, fit.explanation.effects
-    base = tuple(name for name in fit.explanation.drifted if "." not in name)
+    base = fit.explanation.drifted
     # what shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them
     along = [each for each in fit.explanation.variants if EFFECT[each.effect].along and not EFFECT[each.effect].mark]
     names = (*base, *(f"{each.effect}.{name}" for each in along for name in each.free))
@@ -75,12 +76,12 @@ def lacking(fit: Fit, balance: Balance) -> Lacking:
     # a basis of commands is one of torques where the torque of a command is the same everywhere
     basis = np.linalg.qr(basis * scale[:, np.newaxis])[0] if basis.size else basis
     return Lacking(
-        torque=joined(lambda motion: missing(motion, values, acting)),
+        torque=(torque := joined(lambda motion: missing(motion, values, acting))),
         own=joined(lambda motion: missing(motion, fit.values, acting)),
         angle=joined(lambda motion: motion.angle if actuator.quantity != "speed" else np.zeros(motion.samples.size)),
         velocity=joined(lambda motion: motion.velocity),
         time=joined(lambda motion: motion.time),
-        load=joined(lambda motion: motion.motor_torque(values)),
+        load=joined(lambda motion: motion.motor_torque(values)) - torque,
         basis=basis,
         turns=actuator.motion == "rotary" and not actuator.has_stops,
     )

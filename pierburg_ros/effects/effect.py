@@ -305,6 +305,8 @@ class Effect:
     sensors: tuple[Sensor, ...] = SENSORS
     stops: bool = False
     """Whether it needs stops to act."""
+    recorded_in: str = ""
+    """The signal that holds what it does where that is recorded, by its name in `plant.Inputs`."""
     turns_within: Callable[[Mapping[str, float]], float] | None = None
     """Travel [rad] within which its torque turns no more than once, from all values of a model by dotted name;
     None: its torque does not turn over the angle."""

@@ -44,6 +44,7 @@ EFFECT = Effect(
     variants=(Variant(("source_resistance",), grid(source_resistance=(0.12, 0.36, 0.72))),),
     linear=True,
     drives=("voltage",),
+    recorded_in="supply_voltage",
 )
 
 

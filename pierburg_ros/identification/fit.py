@@ -20,7 +20,7 @@ from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fit, Fitter, rungs
 from pierburg_ros.inference.intervals import by_run, slopes_at
 from pierburg_ros.inference.polish import polished
-from pierburg_ros.inference.replay import forgets, pull_of
+from pierburg_ros.inference.replay import pull_of
 from pierburg_ros.inference.shortlist import balanced
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -137,14 +137,10 @@ def fitter_of(recordings: Sequence[Recording], model: Model) -> Fitter:
 
 
 def constants(data: Data, model: Model) -> tuple[float, ...]:
-    """The time constants of the pull [s], one after the other, for what `model` is, however its actuator is described.
-
-    What forgets nothing does not forget where its simulation began either: it keeps to the first.
-    """
+    """The time constants of the pull [s], one after the other, for what `model` is, whatever its description says."""
     numbers = data.actuator.parameters
     own = {name: replace(each, default=model.values[name]) for name, each in numbers.items()}
-    found = rungs(replace(data.actuator, parameters=own), data.period)
-    return found if forgets(data.actuator) else found[:1]
+    return rungs(replace(data.actuator, parameters=own), data.period)
 
 
 def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) -> Fit:
@@ -156,7 +152,7 @@ def climbed(fitter: Fitter, explanation: Explanation, values: dict[str, float]) 
     found = fitter.pulled(first).fit(explanation, values)
     for constant in others:
         found = fitter.pulled(constant).fit(explanation, found.values)
-    if found.ratio > EXPLAINED or not forgets(fitter.data.actuator):
+    if found.ratio > EXPLAINED or not fitter.data.actuator.forgets:
         return found
     free = polished(fitter.pulled(math.inf).fit(explanation, found.values))
     return free if free.ratio <= EXPLAINED else found

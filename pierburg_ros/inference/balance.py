@@ -75,9 +75,12 @@ def balance_of(data: Data, model: Model, constant: float) -> Balance:
 
 
 def missing(motion: Motion, values: Mapping[str, float], effects: Sequence[str]) -> Signal:
-    """The load torque [N.m] that a model with these `values` and `effects` lacks along one motion."""
+    """The load torque [N.m] that a model with these `values` lacks along one motion.
+
+    It has these `effects`, and those that its actuator always has.
+    """
     lacking = motion.motor_torque(values) - motion.load(values)
-    for effect in effects:
+    for effect in dict.fromkeys((*motion.whole.actuator.effects, *effects)):
         along = EFFECT[effect].along
         if along is not None:
             lacking = np.asarray(lacking - along(motion, values))

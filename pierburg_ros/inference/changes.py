@@ -34,7 +34,7 @@ def changes(fit: Fit, balance: Balance) -> list[Change]:
     """
     if len(balance.motions) > 1 or fit.explanation.changed is not None:
         return []
-    nominal, names = fit.fitter.nominal, tuple(name for name in fit.explanation.drifted if "." not in name)
+    nominal, names = fit.fitter.nominal, fit.explanation.drifted
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, names, fit.values, acting)
     coordinates = Coordinates(names, nominal, balance.duration)

@@ -98,7 +98,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
 
     Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
     slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, the
-    best explanation counts whose effects all are sure enough, with all drifts.
+    best explanation counts whose effects all are sure enough, beside whatever else, with all drifts.
     """
     weakest, last = tuple(fits), fits[0].fitter
     explained = any(map(adequate, fits))
@@ -113,7 +113,8 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
         everything = [*smaller, *fits, *dropped, *in_place(best, fits, parameters, pool)]
     else:
         everything = [described, *fits]
-        best = min((fit for fit in fits if sure(fit, everything)), key=lambda fit: fit.chi2)
+        sure = {name for name, each in surest(everything).items() if each.confidence >= least(name)}
+        best = min((fit for fit in fits if key(fit) <= sure), key=lambda fit: fit.chi2)
     score = Score.of([best, *everything])
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
@@ -125,7 +126,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
         described=known[0],
         estimated=next(fit for fit in weakest if bare(fit)),
         fits=(handed, *known),
-        names={effect: name_of(effect, best, everything, explained) for effect in best.explanation.effects},
+        names=names(best, everything, explained),
         doubted=doubted(best, everything, explained),
         ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )
@@ -288,9 +289,22 @@ def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:
     return min(fits, key=lambda fit: rms_of(fit, samples))
 
 
-def sure(fit: Fit, fits: Sequence[Fit]) -> bool:
-    """Whether all that a fit adds to drifts, and which leaves an error, is sure enough to be named."""
-    return all(name_of(each, fit, fits).confidence >= least(each) for each in key(fit))
+def names(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
+    """How sure each effect of the `best` fit is: by that fit or, where something remains, by any that has it."""
+    if not explained:
+        return {name: each for name, each in surest(fits).items() if name in best.explanation.effects}
+    return {effect: name_of(effect, best, fits, explained) for effect in best.explanation.effects}
+
+
+def surest(fits: Sequence[Fit]) -> dict[str, Name]:
+    """For each effect, or change, the explanation in which it is surest."""
+    found: dict[str, Name] = {}
+    for fit in fits:
+        for name in key(fit):
+            each = name_of(name, fit, fits)
+            if name not in found or each.confidence > found[name].confidence:
+                found[name] = each
+    return found
 
 
 def least(name: str) -> float:

@@ -70,15 +70,20 @@ def at_least_effective(slopes: Signal, residuals: tuple[Signal, ...]) -> Covaria
 
 
 def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal) -> Spread:
-    """Covariance from slopes, shape (samples, names), residuals, one array a run, and deviations `before`, (names,)."""
+    """Covariance from slopes, shape (samples, names), residuals, one array a run, and deviations `before`, (names,).
+
+    Freedom is counted in effective samples: sums over few long blocks say how much the residual varies, not how many
+    times.
+    """
     residual = np.concatenate(residuals)
-    freedom = max(residual.size - before.size, 1)
-    variance = max(float(residual @ residual) / freedom, 1e-300) * repetition(residual)
+    repeated = repetition(residual)
+    variance = max(float(residual @ residual) / max(residual.size - before.size, 1), 1e-300) * repeated
+    freedom = max(residual.size / repeated - before.size, 1.0)
     left, lengths, directions = np.linalg.svd(slopes * before, full_matrices=False)
     lengths = np.where(lengths > RANK * lengths[0], lengths, 0.0)
     scaled = (left * lengths) @ directions
     inverse = (directions.T / (lengths**2 / variance + 1.0)) @ directions
-    inflation, factor = np.ones(before.size), float(stdtrit(freedom, 0.975))
+    inflation = np.ones(before.size)
     length = max(correlation_length(part) for part in residuals)
     if length > 1:
         scores = block_scores(scaled, residuals, 4 * length)
@@ -86,8 +91,7 @@ def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal) -> Spr
         middle = scores.T @ scores * blocks / max(blocks - 1, 1) / variance**2 + np.eye(before.size)
         sandwich = np.diagonal(inverse @ middle @ inverse)
         inflation = np.sqrt(np.maximum(sandwich / np.diagonal(inverse), 1.0))
-        factor = float(stdtrit(max(blocks - before.size, 1), 0.975))
-    return Spread(inverse * np.outer(inflation * before, inflation * before), factor)
+    return Spread(inverse * np.outer(inflation * before, inflation * before), float(stdtrit(freedom, 0.975)))
 
 
 def _inverse(jacobian: Signal) -> tuple[Signal, Flags]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pierburg_ros.actuators import Actuator, Scales
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import DECLARED, STEP
+from pierburg_ros.effects.effect import Effect
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.evidence import coarse_step, lasting_rounding
 from pierburg_ros.plant import Inputs, Model
@@ -98,6 +99,13 @@ class Data:
     def period(self) -> float:
         """Median time between samples [s]."""
         return float(np.median(np.concatenate([np.diff(run.time) for run in self.runs])))
+
+    def obstacle(self, effect: Effect) -> str:
+        """Why `effect` cannot act beside these recordings, in words; nothing where it can."""
+        signal = effect.recorded_in
+        if signal and all(getattr(run.inputs, signal) is not None for run in self.runs):
+            return f"the recorded {signal.replace('_', ' ')} holds it already"
+        return self.actuator.obstacle(effect)
 
     @cached_property
     def per_unit(self) -> float:

@@ -183,7 +183,7 @@ class Fitter:
         for run, pull in zip(self.data.runs, self.pulls, strict=True):
             self.effort.count()
             start = beginning(run, model)
-            simulated = follow(model, run.inputs, run.time, run.measured, start, pull, self.data.per_unit, after, when)
+            simulated = follow(model, run.inputs, run.time, run.measured, start, pull, after, when)
             parts.append(run.measured - simulated)
         left = np.concatenate(parts) / self.data.noise
         unknown = np.flatnonzero(~np.isfinite(left))
@@ -262,9 +262,12 @@ def ladder(data: Data) -> tuple[float, ...]:
 
 
 def rungs(actuator: Actuator, period: float) -> tuple[float, ...]:
-    """The same for an actuator and samples a `period` [s] apart."""
+    """The same for an actuator and samples a `period` [s] apart.
+
+    What forgets nothing does not forget where its simulation began either: it keeps to the first.
+    """
     own = max(actuator.scales.time, SHORTEST_PULL * period)
-    return tuple(rung * own for rung in LADDER)
+    return tuple(rung * own for rung in (LADDER if actuator.forgets else LADDER[:1]))
 
 
 def strongest(fitter: Fitter) -> Fitter:

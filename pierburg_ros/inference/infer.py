@@ -59,8 +59,7 @@ def infer(
     effort = Effort(budget)
     fitter = Fitter(data, nominal, first, effort)
     with workers(jobs) as pool:
-        base = tuple(name for name in free if "." not in name)
-        search = Search(balance, independent(fitter, balance, base), forms(data, nominal, span), pool, tell)
+        search = Search(balance, independent(fitter, balance, free), forms(data, nominal, span), pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool)
         if len(choice.chosen.explanation.drifted) > 1 and choice.explained:

@@ -13,17 +13,12 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.data import FIRST, refuse_others, run_of
 from pierburg_ros.inference.fit import beginning, inertia_time, rungs
 from pierburg_ros.plant import Model
-from pierburg_ros.plant.decode import angle_per_unit, decoded
+from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.following import Pull, follow
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
-
-
-def forgets(actuator: Actuator) -> bool:
-    """Whether an actuator forgets its initial state: a spring or a closed bridge brings it back."""
-    return actuator.load == "spring" or actuator.drive == "voltage"
 
 
 def pull_of(actuator: Actuator, period: float) -> float:
@@ -32,7 +27,7 @@ def pull_of(actuator: Actuator, period: float) -> float:
     A pendulum or a free rotor driven by a current or a torque forgets nothing. Its simulation drifts from any recording
     for ever, so it is pulled with the actuator's own time.
     """
-    return math.inf if forgets(actuator) else rungs(actuator, period)[0]
+    return math.inf if actuator.forgets else rungs(actuator, period)[0]
 
 
 def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:
@@ -96,7 +91,7 @@ def _simulated(model: Model, recording: Recording) -> Signal:
     run = run_of(recording, nominal, 0, np.zeros(recording.time.size, dtype=np.int64))
     period = float(np.median(np.diff(run.time)))
     inertial = inertia_time(nominal) > period and run.quantity != "speed"
-    pull, per_unit = Pull.every(run.time, pull_of(model.actuator, period), inertial), angle_per_unit(nominal)
-    found = follow(model, run.inputs, run.time, run.measured, beginning(run, model), pull, per_unit)
+    pull = Pull.every(run.time, pull_of(model.actuator, period), inertial)
+    found = follow(model, run.inputs, run.time, run.measured, beginning(run, model), pull)
     turned = recording.quantity == "position" and run.quantity == "hall_voltage"
     return decoded(nominal, found) if turned else found

@@ -21,7 +21,7 @@ TRIED = 8
 """Effects whose promises are fitted on top of an explanation, half as many on top of one with effects. Work: each
 costs two short fits; not varied."""
 PROMISING = 0.2
-"""Share of the fall of chi2 that the best promise foretells, below which a promise is not fitted. Measured: the effect
+"""Part of the share that the best promises to take, below which a promise is not fitted. Measured: the effect
 that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
@@ -170,7 +170,7 @@ def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
     """The best promises of each of so many `effects`, in the order of their best, but for what promises little."""
     groups: dict[str, list[Promise]] = {}
     for promise in promised:
-        if promise.fall < PROMISING * promised[0].fall:
+        if promise.share < PROMISING * promised[0].share:
             break
         groups.setdefault(promise.variant.effect, []).append(promise)
     return [promise for group in list(groups.values())[:effects] for promise in group[:STARTS]]

@@ -1,9 +1,10 @@
 """Which effects, added to an explanation, promise most: read off the balance, then off one simulation each.
 
-The balance screens hundreds of starts of an effect that acts along the motion. A simulation of the best, and of every
-start of an effect that shows at rests, reversals and stops, is then compared with the residual of a pulled fit: by how
-much does a share of it lower the cost, beside changes of all values that are free already? Its job is never to lose
-the truth; fits decide.
+The balance screens hundreds of starts of an effect that acts along the motion, and says what share of its error each
+takes. A simulation of the best, and of every start of an effect that shows at rests, reversals and stops, is then
+compared with the residual of a pulled fit: what share of its error does it take, beside changes of all values that are
+free already? The larger share counts: an error at one moment stays there in the balance, and rests show in a simulation
+only. Its job is never to lose the truth; fits decide.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data
+from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fit, Fitter
 from pierburg_ros.inference.intervals import slopes_at
@@ -38,15 +40,15 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class Promise:
-    """A start of an added effect: all values by dotted name, and the fall of chi2 that a linear step foretells.
+    """A start of an added effect: all values by dotted name, and the `share` of the error that it promises to take.
 
     `own` is the share, 0 to 1, of what the effect changes that no change of the values which are free already makes.
-    `balanced` are all values by the balance with the effect acting; `fall` is what they make of chi2, if that is more.
+    `balanced` are all values by the balance with the effect acting.
     """
 
     variant: Variant
     values: dict[str, float]
-    fall: float
+    share: float
     own: float
     balanced: dict[str, float]
 
@@ -82,13 +84,17 @@ def independent(fitter: Fitter, balance: Balance, names: Sequence[str]) -> tuple
 
     First come those that the balance tells from the ones before them, then what only a simulation shows, as the zero of
     a sensor. Of quantities of which only a ratio shows the last is held: what scales with the others stays as it is.
+    What shows nowhere in its range is held too.
     """
     nominal = fitter.nominal
     _, slopes = sloped(balance, nominal, names, nominal.values, ())
     moving = [names[place] for place in telling(slopes)]
     ordered = (*moving, *(name for name in names if name not in moving))
-    simulated = slopes_at(fitter.fit(Explanation(), nominal.values, 0), Explanation(ordered))
-    kept = [ordered[place] for place in telling(simulated)]
+    own = Explanation(ordered)
+    lower, upper = fitter.coordinates(own).bounds
+    simulated = slopes_at(fitter.fit(Explanation(), nominal.values, 0), own)
+    seen = np.linalg.norm(simulated, axis=0) * (upper - lower) > math.sqrt(SIGNIFICANT)
+    kept = [ordered[place] for place in telling(simulated) if seen[place]]
     return tuple(name for name in names if name in kept)
 
 
@@ -113,7 +119,7 @@ def forms(data: Data, nominal: Model, span: Span) -> list[tuple[Variant, list[di
     """Every way in which an effect may act in this actuator, with the values that a search starts from, in units."""
     actuator, found = data.actuator, []
     for effect in EFFECTS:
-        if actuator.obstacle(effect) or effect.id in actuator.effects:
+        if data.obstacle(effect) or effect.id in actuator.effects:
             continue
         for each in effect.variants:
             variant = Variant(effect.id, each.free, tuple(each.fixed.items()))
@@ -130,11 +136,12 @@ def promises(
 ) -> list[Promise]:
     """What each of the `candidates` promises on top of a `fit`, the most first."""
     nominal = fit.fitter.nominal
-    base = [name for name in fit.explanation.drifted if "." not in name]
+    base = fit.explanation.drifted
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, base, fit.values, acting)
     project, left = projected(inside, nominal, base, values, acting)
-    groups: list[tuple[Variant, list[Start], dict[str, float]]] = []
+    error = float(left @ left)
+    groups: list[tuple[Variant, list[Start], dict[str, float], float]] = []
     for variant, starts in candidates:
         if variant.effect in acting:
             continue
@@ -143,9 +150,11 @@ def promises(
             screened = [_screened(inside, values, variant, group, project, left) for group in several]
             several = [group for _, group in sorted(screened, key=lambda each: -each[0])[:SCREENED]]
             several = [_dated(inside, values, variant, group, project, left) for group in several]
-        groups += [(variant, *_settled(inside, nominal, base, acting, values, variant, group)) for group in several]
+        for group in several:
+            begun, settled, rest = _settled(inside, nominal, base, acting, values, variant, group)
+            groups.append((variant, begun, settled, 1.0 - rest / max(error, 1e-300)))
     found = pool.map(lambda group: _promise(fit, *group), groups)
-    return sorted((each for each in found if each is not None), key=lambda each: -each.fall)
+    return sorted((each for each in found if each is not None), key=lambda each: -each.share)
 
 
 def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
@@ -189,7 +198,7 @@ def _screened(
     """The share of the balance's error that starts take which differ in phase alone, and they with their strength."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
     columns = beside(columns, basis)
-    scale, fall = _step(columns, left)
+    scale, fall = _step(columns, left, _limit(variant.effect, group))
     return fall, _scaled(variant.effect, group, scale)
 
 
@@ -226,8 +235,8 @@ def _settled(
     values: Mapping[str, float],
     variant: Variant,
     group: Sequence[Start],
-) -> tuple[list[Start], dict[str, float]]:
-    """Starts after a fit of the balance beside the effect, and all values of that fit.
+) -> tuple[list[Start], dict[str, float], float]:
+    """Starts after a fit of the balance beside the effect, all values of that fit, and the squared error it leaves.
 
     What shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them.
     """
@@ -235,7 +244,7 @@ def _settled(
     own = () if effect.mark else tuple(f"{variant.effect}.{name}" for name in variant.free)
     start = in_order(added(values, variant, group[0]), nominal)
     if not own and effect.along is None:
-        return list(group), start
+        return list(group), start, math.inf
     coordinates = Coordinates((*names, *own), nominal, balance.duration)
 
     def residual(point: Signal) -> Signal:
@@ -244,17 +253,23 @@ def _settled(
     found = minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps, SETTLING)
     settled = in_order({**start, **coordinates.values(found.point)}, nominal)
     if not own:
-        return list(group), settled
+        return list(group), settled, found.cost
     numbers = {
         p.name: settled[f"{effect.id}.{p.name}"] - (settled[p.above] if p.above else 0.0) for p in effect.parameters
     }
     if len(group) < 2 or effect.ripple is None:
-        return [numbers], settled
-    return [numbers, {**numbers, effect.ripple.phase: numbers[effect.ripple.phase] + math.pi / 2}], settled
+        return [numbers], settled, found.cost
+    turned = {**numbers, effect.ripple.phase: numbers[effect.ripple.phase] + math.pi / 2}
+    return [numbers, turned], settled, found.cost
 
 
-def _promise(fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float]) -> Promise | None:
-    """What one linear step along some starts foretells; None where the effect cannot be added to the fit."""
+def _promise(
+    fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float], share: float
+) -> Promise | None:
+    """What one linear step along some starts foretells, or the balance's `share` if that is more.
+
+    None where the effect cannot be added to the fit.
+    """
     fitter, before, columns = fit.fitter, fit.fitted, []
     samples = fitter.data.train
     for start in group:
@@ -266,23 +281,30 @@ def _promise(fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[s
     whole = np.stack(columns, axis=1)
     changed = beside(whole, fit.basis)
     own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
-    scale, fall = _step(changed, beside(before, fit.basis))
+    scale, fall = _step(changed, beside(before, fit.basis), _limit(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
-    try:
-        at_once = fitter.residual(*fitter.models(fit.explanation, settled))[samples]
-        fall = max(fall, fit.chi2 - float(at_once @ at_once))
-    except InputError:
-        settled = fit.values
-    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), fall, own, settled)
+    share = max(share, fall / max(fit.chi2, 1e-300))
+    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), share, own, settled)
 
 
-def _step(columns: Signal, left: Signal) -> tuple[Signal, float]:
-    """By how much to scale columns for the least squared error beside what is `left`, and the fall of it."""
+def _step(columns: Signal, left: Signal, limit: float) -> tuple[Signal, float]:
+    """By how much to scale columns for the least squared error beside what is `left`, and the fall of it.
+
+    A single column is scaled by a factor within `limit` and its inverse: beyond, a simulation is no longer linear.
+    """
     normal, slope = columns.T @ columns, columns.T @ left
     if np.linalg.cond(normal) > SINGULAR:
         return np.zeros(slope.size), 0.0
     scale = -np.linalg.solve(normal, slope)
-    return scale, float(-slope @ scale)
+    if scale.size == 1:
+        scale = np.clip(scale, 1.0 / limit, limit)
+    return scale, float(-(2.0 * slope + normal @ scale) @ scale)
+
+
+def _limit(effect: str, group: Sequence[Start]) -> float:
+    """The largest factor by which the strength of a start is scaled."""
+    strides = (EFFECT[effect].parameter(name).stride for name in group[0])
+    return max((stride for stride in strides if stride is not None), default=1.0)
 
 
 SINGULAR = 1e12

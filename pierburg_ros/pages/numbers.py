@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 NONE = "-"
 FEWEST_DIGITS = 3
@@ -27,6 +28,26 @@ def interval(ends: Sequence[float] | None) -> str:
     if ends is None:
         return NONE
     return " to ".join(_shown(end, ends) for end in ends)
+
+
+class Known(Protocol):
+    """A value of which something is known (`diagnosis.schema.Estimate`)."""
+
+    ci95: tuple[float, float] | None
+    identifiable: bool
+    at_bound: bool
+    tied_with: list[str]
+
+
+def known(estimate: Known) -> str:
+    """What is known of a value: its interval, or why there is none to act on."""
+    if estimate.at_bound:
+        return "on a bound of the search"
+    if estimate.identifiable:
+        return interval(estimate.ci95) if estimate.ci95 else "fixed by the samples"
+    if estimate.tied_with:
+        return f"shows only with {' and '.join(map(words, estimate.tied_with))}"
+    return f"{interval(estimate.ci95)}, too wide to act on" if estimate.ci95 else "not determined"
 
 
 def value(middle: float | None, ends: Sequence[float] | None = None) -> str:
@@ -89,6 +110,7 @@ FILTERS = {
     "number": number,
     "whole": whole,
     "interval": interval,
+    "known": known,
     "value": value,
     "confidence": confidence,
     "percent": percent,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.kernel import kernel
+from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.plant.model import Model
 from pierburg_ros.plant.simulate import Inputs, begin, channels, run
 from pierburg_ros.plant.state import blank_state, displace, place, turn
@@ -73,14 +74,13 @@ def follow(
     measured: Signal,
     start: Signal,
     pull: Pull,
-    per_unit: float,
     after: Model | None = None,
     when: float = math.inf,
 ) -> Signal:
     """Measured quantity by `model` at each `time` [s], shape (samples,), the state pulled towards `measured`.
 
     A sample is what the model says before the pull that it is part of. `start` is angle [rad], velocity [rad/s],
-    acceleration [rad/s^2] and way of coming, as `simulate` begins; `per_unit` the angle [rad] of one measured unit.
+    acceleration [rad/s^2] and way of coming, as `simulate` begins.
     `after` takes over the running state `when` [s] it is time. Not a number from where the model cannot be simulated.
     """
     record, state, output = model.record()[0], blank_state()[0], np.empty(time.size)
@@ -98,7 +98,7 @@ def follow(
                 time[first:end],
                 measured[first:end],
                 *own,
-                per_unit,
+                angle_per_unit(part),
                 output[first:end],
             )
     return output

@@ -7,7 +7,6 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.plant import Inputs, Model, simulate
-from pierburg_ros.plant.decode import angle_per_unit
 from pierburg_ros.plant.following import Pull, follow
 
 NOMINAL = Model.nominal(read_actuator("pierburg"))
@@ -19,7 +18,7 @@ STILL = np.zeros(4)
 
 def followed(model, inputs, time, measured, constant, start=STILL, inertial=False):
     pull = Pull.every(time, constant, inertial)
-    return follow(model, inputs, time, measured, start, pull, angle_per_unit(model))
+    return follow(model, inputs, time, measured, start, pull)
 
 
 def test_without_a_pull_it_is_the_simulation():

@@ -81,4 +81,4 @@ def disturbed(changes: dict[str, float], seed: int) -> Recording:
 def changing(model: Model, after: Model, when: float, inputs: Inputs, time: np.ndarray) -> np.ndarray:
     """The simulation of a model that another one takes over from `when` [s], pulled by nothing."""
     nothing = np.zeros(time.size)
-    return follow(model, inputs, time, nothing, np.zeros(4), Pull.every(time, np.inf, False), 1.0, after, when)
+    return follow(model, inputs, time, nothing, np.zeros(4), Pull.every(time, np.inf, False), after, when)

@@ -41,6 +41,7 @@ from pierburg_ros.diagnosis.schema import (
 )
 from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
 from pierburg_ros.inference.choice import Name, Score, taken
+from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.inference.explanation import AFTER, WHEN
 from pierburg_ros.inference.fit import Fit, rms_of, strongest
@@ -87,7 +88,7 @@ def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
         ruled_out=[ruled_out(each.limit, found) for each in found.seen.values() if each.limit is not None],
         remaining=left,
         excluded=excluded(cleaned),
-        cannot_act=cannot_act(actuator),
+        cannot_act=cannot_act(found.data),
         residual_torque=remains.document(found.model, found.lacking, left.looks_like),
         data_quality=quality.data_quality(runs, actuator, data.noise, remarks),
         advice=words.advice(found, named, parameters_found, hidden, short),
@@ -334,9 +335,9 @@ def excluded(cleaned: Sequence[Cleaned]) -> list[Excluded]:
     ]
 
 
-def cannot_act(actuator: Actuator) -> list[CannotAct]:
-    """Effects that are tested in other kinds of actuator and cannot act in this one."""
-    obstacles = {effect.id: actuator.obstacle(effect) for effect in EFFECTS if effect.variants}
+def cannot_act(data: Data) -> list[CannotAct]:
+    """Effects that are tested in other kinds of actuator, or recordings, and cannot act in these."""
+    obstacles = {effect.id: data.obstacle(effect) for effect in EFFECTS if effect.variants}
     return [CannotAct(id=effect, why=why) for effect, why in obstacles.items() if why]
 
 

@@ -12,15 +12,15 @@ from rich.text import Text
 
 from pierburg_ros.diagnosis.schema import BaseParameter, Diagnosis, Estimate, RuledOut
 from pierburg_ros.pages.listing import Listing
-from pierburg_ros.pages.numbers import confidence, interval, ties, unit, value, words
+from pierburg_ros.pages.numbers import confidence, known, ties, unit, value, words
 
 
 def shown(diagnosis: Diagnosis) -> Group:
     """The parts of a diagnosis that a terminal shows."""
     verdict = diagnosis.verdict.replace("_", " ")
     parts: list[RenderableType] = [Panel(Text(diagnosis.summary), title=verdict, expand=False)]
-    if diagnosis.effects or any(p.drifted for p in diagnosis.parameters.values()):
-        parts.append(_changed(diagnosis))
+    if (changed := _changed(diagnosis)).rows:
+        parts.append(changed)
     if diagnosis.effects:
         sure = (f"{words(effect.id)} {confidence(effect.confidence)}" for effect in diagnosis.effects)
         parts.append(Text(f"Confidence: {', '.join(sure)}"))
@@ -51,7 +51,7 @@ def _changed(diagnosis: Diagnosis) -> Listing:
     rows += [
         _row(name, parameter, parameter.indistinguishable_from)
         for name, parameter in diagnosis.parameters.items()
-        if parameter.drifted
+        if parameter.value != parameter.nominal
     ]
     return Listing(("what", "value", "95 %", "cannot be told from"), rows)
 
@@ -60,8 +60,7 @@ def _row(name: str, estimate: Estimate | BaseParameter, alternatives: Sequence[S
     """Name, value, interval, and the quantities from which it is not distinguished."""
     ends = estimate.ci95
     shown = value(estimate.value, ends) + unit(estimate.unit) if estimate.value is not None else ""
-    known = interval(ends) if ends and estimate.identifiable else "not identifiable"
-    return name, shown, known, ties(alternatives)
+    return name, shown, known(estimate), ties(alternatives)
 
 
 def _errors(diagnosis: Diagnosis) -> Listing:

@@ -166,8 +166,12 @@ def handed_out(found: Found) -> str:
     own = numbers.words(identifier(model))
     what = "the model as described" if own == NOMINAL else f"one with {own}"
     shape = " and a map of the missing torque" if model.model.residual_torque is not None else ""
+    values, nominal = model.model.values, model.fitter.nominal.values
+    changed = (f"{numbers.words(name)} {values[name]:.4g}" for name in values if values[name] != nominal.get(name, 0.0))
+    listed = f" ({', '.join(changed)})" if own != NOMINAL else ""
     return (
-        f"The model that is handed out is {what}{shape}: of all that were fitted it predicts best what no fit has seen."
+        f"The model that is handed out is {what}{shape}: of all that were fitted it predicts best what no fit has"
+        f" seen{listed}."
     )
 
 
