@@ -152,7 +152,9 @@ def promises(
             several = [_dated(inside, values, variant, group, project, left) for group in several]
         for group in several:
             begun, settled, rest = _settled(inside, nominal, base, acting, values, variant, group)
-            groups.append((variant, begun, settled, 1.0 - rest / max(error, 1e-300)))
+            share = 1.0 - rest / max(error, 1e-300)
+            # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
+            groups.append((variant, begun if share > 1.0 / left.size else group, settled, share))
     found = pool.map(lambda group: _promise(fit, *group), groups)
     return sorted((each for each in found if each is not None), key=lambda each: -each.share)
 
@@ -290,14 +292,14 @@ def _promise(
 def _step(columns: Signal, left: Signal, limit: float) -> tuple[Signal, float]:
     """By how much to scale columns for the least squared error beside what is `left`, and the fall of it.
 
-    A single column is scaled by a factor within `limit` and its inverse: beyond, a simulation is no longer linear.
+    A single column is scaled up to `limit`: beyond, and on the other side of none, a simulation is not linear.
     """
     normal, slope = columns.T @ columns, columns.T @ left
     if np.linalg.cond(normal) > SINGULAR:
         return np.zeros(slope.size), 0.0
     scale = -np.linalg.solve(normal, slope)
     if scale.size == 1:
-        scale = np.clip(scale, 1.0 / limit, limit)
+        scale = np.clip(scale, 0.0, limit)
     return scale, float(-(2.0 * slope + normal @ scale) @ scale)
 
 
