@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
-from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, without
+from pierburg_ros.inference.coordinates import in_order
+from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, balanced, promises
@@ -123,13 +124,19 @@ def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
 
 
 def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
-    """Short fits from each of the promises on top of a fit."""
+    """Short fits from each of the promises on top of a fit.
+
+    Drifts begin as in the fit, by the balance, and as described. Where events jump each of these may end elsewhere;
+    otherwise the nearest does.
+    """
+    described = {name: fit.fitter.nominal.values[name] for name in fit.explanation.drifted}
 
     def one(promise: Promise) -> Fit:
         explanation = fit.explanation.plus(promise.variant)
-        starts = promise.values, promise.balanced
-        nearest = min((fit.fitter.fit(explanation, start, 0) for start in starts), key=lambda each: each.chi2)
-        return fit.fitter.fit(explanation, nearest.values, BRIEF)
+        starts = promise.values, promise.balanced, in_order({**promise.values, **described}, fit.fitter.nominal)
+        begun = sorted((fit.fitter.fit(explanation, start, 0) for start in starts), key=lambda each: each.chi2)
+        several = begun if jumps(explanation) else begun[:1]
+        return min((fit.fitter.fit(explanation, each.values, BRIEF) for each in several), key=lambda each: each.chi2)
 
     return list(search.pool.map(one, promised))
 
