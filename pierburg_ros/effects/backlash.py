@@ -41,7 +41,6 @@ EFFECT = Effect(
         Variant(("gap", "motor_friction_share"), grid(gap=(0.0095, 0.0255, 0.051), motor_friction_share=(0.1, 0.4))),
     ),
     linear=True,
-    jumps=True,
     drives=MOTORS,
     play="gap",
 )

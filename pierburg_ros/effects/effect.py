@@ -298,8 +298,6 @@ class Effect:
     linear: bool = False
     """Whether torques stay straight lines of angle and velocity between events: the simulator then takes no
     shorter steps for it."""
-    jumps: bool = False
-    """Whether events jump as its values change, so that the cost of a fit has many local minima."""
     drives: tuple[Drive, ...] = DRIVES
     loads: tuple[Load, ...] = LOADS
     sensors: tuple[Sensor, ...] = SENSORS

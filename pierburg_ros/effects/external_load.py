@@ -140,7 +140,6 @@ EFFECT = Effect(
         Variant(("torque", "start", "end"), _every_span),
     ),
     ripple=Ripple("amplitude", "phase"),
-    jumps=True,
 )
 
 

@@ -50,7 +50,6 @@ EFFECT = Effect(
     typical={"delay": 0.02094654},
     variants=(Variant(("delay",), grid(delay=(0.031, 0.105, 0.21, 0.37, 0.63, 1.26))),),
     linear=True,
-    jumps=True,
     put_in=put_in,
     dead_time="delay",
 )

@@ -73,7 +73,6 @@ EFFECT = Effect(
     along=along,
     typical={"amplitude": 0.0224172, "center": 0.5092958, "width": 0.09549297},
     variants=(Variant(("amplitude", "center", "width"), _every_spot),),
-    jumps=True,
 )
 
 

@@ -67,7 +67,6 @@ EFFECT = Effect(
             grid(breakaway_torque=(0.0112, 0.0224, 0.0374), stribeck_velocity=(0.0024, 0.0073)),
         ),
     ),
-    jumps=True,
 )
 
 

@@ -59,8 +59,8 @@ class Explanation:
 
 
 def jumps(explanation: Explanation) -> bool:
-    """Whether events jump as the values change, so that the cost has many local minima."""
-    return any(EFFECT[effect].jumps for effect in explanation.effects)
+    """Whether an effect shows at events, which jump as the values change: the cost then has many local minima."""
+    return any(EFFECT[effect].mark is not None for effect in explanation.effects)
 
 
 Quantity = str | Variant
