@@ -109,21 +109,33 @@ def seen(fit: Fit, candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
 
 
 def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
-    """The weakest limit and the largest mark over the ways in which one effect may act by one of its strengths."""
-    each = [_of_case(fit, case) for case in cases if case.parameter == cases[0].parameter]
-    known = [one for one in each if one is not None]
+    """The weakest limit and the largest mark over the ways in which one effect may act by one of its strengths.
+
+    The parameters follow the weakest by linear steps: the others are excluded before it.
+    """
+    every = [(case, _linear(fit, case)) for case in cases if case.parameter == cases[0].parameter]
+    known = [(case, each) for case, each in every if each is not None]
     if not known:
         return None
-    mark = max(one.mark for one in known)
-    limits = [one.limit for one in known if one.limit is not None]
-    if len(limits) < len(each):
+    mark = max(each.mark for _, each in known)
+    if len(known) < len(every) or any(each.factor is None for _, each in known):
         return Seen(None, mark)
-    weakest = min if limits[0].above else max
-    return Seen(weakest(limits, key=lambda limit: limit.value), mark)
+    weakest = min if cases[0].above else max
+    case, linear = weakest(known, key=lambda each: each[0].at(each[1].factor or 0.0)[each[0].parameter])
+    return Seen(_followed(fit, case, linear), mark)
 
 
-def _of_case(fit: Fit, case: Case) -> Seen | None:
-    """The strength that is excluded; None where the effect cannot be added to the model."""
+@dataclass(frozen=True)
+class _Linear:
+    """The factor of a start that linear steps of the parameters exclude, if any, its mark, and the chi2 that allows."""
+
+    factor: float | None
+    mark: float
+    possible: float = math.inf
+
+
+def _linear(fit: Fit, case: Case) -> _Linear | None:
+    """The strength that is excluded by linear steps; None where the effect cannot be added to the model."""
     least, largest = case.factors(fit)
     left, counts_as_one = beside(fit.fitted, fit.basis), fit.repetition * max(fit.ratio**2, 1.0)
     allowed = ONE_SIDED * counts_as_one
@@ -136,23 +148,29 @@ def _of_case(fit: Fit, case: Case) -> Seen | None:
         if step == 0:
             mark = size / counts_as_one
         if size <= 0.0:
-            return Seen(None, mark)
+            return _Linear(None, mark)
         best = max(-float(change @ left) / size, 0.0)
         following = max(best + math.sqrt(allowed / size), least)
         if following > largest:
-            return Seen(None, mark)
+            return _Linear(None, mark)
         found = abs(math.log(following / factor)) < SETTLED
         factor = following
         if found:
             break
-    possible = fit.chi2 - size * best**2 + allowed
+    return _Linear(factor, mark, fit.chi2 - size * best**2 + allowed)
+
+
+def _followed(fit: Fit, case: Case, linear: _Linear) -> Limit | None:
+    """The limit that holds although the parameters follow by short fits; None where nothing is excluded."""
+    assert linear.factor is not None
+    factor, (_, largest) = linear.factor, case.factors(fit)
     for _ in range(RAISED):
-        if not _fits(fit, case, factor, possible):
-            return Seen(_limit(fit, case, factor), mark)
+        if not _fits(fit, case, factor, linear.possible):
+            return _limit(fit, case, factor)
         factor *= WIDENED
         if factor > largest:
             break
-    return Seen(None, mark)
+    return None
 
 
 def _change(fit: Fit, case: Case, factor: float) -> np.ndarray | None:

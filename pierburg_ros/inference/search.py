@@ -82,7 +82,7 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
             search.tell(f"{label(new[0])}, to the end")
             led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
             before, leading = leading[0], nearest(led)
-            ended = best_of_support([*ended, *followed(led, search.pool)])
+            ended = best_of_support([*ended, *followed(leading, search.pool)])
             ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
             if excess(leading[0]) > WORTH_ADDING * excess(before):
                 break
@@ -109,11 +109,12 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
 
 
 def aliases(fit: Fit, search: Search) -> list[Fit]:
-    """A fit with each effect added that changes of the drifts can make as well: it may need fewer of these."""
+    """A fit with an effect added that may stand for its drifts: what equals them, and what promises most beside."""
     search.tell(f"what equals the drifts beside {label(fit)}")
     few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
-    promised = [each for each in promises(fit, search.balance, few, search.pool) if each.own < ALIAS]
-    return best_of_support(fits_of(fit, promised, search))
+    promised = promises(fit, search.balance, few, search.pool)
+    most = best_of_each(promised, TRIED)
+    return best_of_support(fits_of(fit, [*most, *(p for p in promised if p.own < ALIAS and p not in most)], search))
 
 
 def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
@@ -179,7 +180,9 @@ def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
     for promise in promised:
         if promise.share < PROMISING * promised[0].share:
             break
-        groups.setdefault(promise.variant.effect, []).append(promise)
+        group = groups.setdefault(promise.variant.effect, [])
+        if not any(promise.equals(other) for other in group):
+            group.append(promise)
     return [promise for group in list(groups.values())[:effects] for promise in group[:STARTS]]
 
 

@@ -34,6 +34,8 @@ SCREENED = 4
 """Starts of one effect that the balance hands on. Work: each costs two simulations; not varied."""
 SETTLING = 8
 """Iterations of such a fit. Work: the simulation fits on."""
+EQUAL = 0.01
+"""Share by which the numbers of two equal starts differ at most. Chosen: far less than a fit moves them."""
 ROUNDS = 3
 """Fits of the balance, each without what was outlying in the one before. Work: each takes milliseconds; not varied."""
 
@@ -51,6 +53,14 @@ class Promise:
     share: float
     own: float
     balanced: dict[str, float]
+
+    def equals(self, other: Promise) -> bool:
+        """Whether a fit would begin where one of `other` does."""
+        return self.variant == other.variant and all(
+            math.isclose(mine[name], value, rel_tol=EQUAL)
+            for mine, theirs in ((self.values, other.values), (self.balanced, other.balanced))
+            for name, value in theirs.items()
+        )
 
 
 @dataclass(frozen=True)
