@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -93,12 +93,14 @@ class Choice:
 Verdict = Literal["consistent", "parameter_drift", "missing_physics", "unexplained"]
 
 
-def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Choice:
+def chosen(
+    fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, aliases: Callable[[Fit], Sequence[Fit]]
+) -> Choice:
     """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
 
     Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
-    slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, the
-    best explanation counts whose effects all are sure enough, beside whatever else, with all drifts.
+    slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, only
+    effects count that are sure enough, beside whatever else. `aliases` are a fit with what may stand for its drifts.
     """
     weakest, last = tuple(fits), fits[0].fitter
     explained = any(map(adequate, fits))
@@ -107,14 +109,21 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> Ch
         explained = any(adequate(fit) and jumps(fit.explanation) for fit in fits)
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
-    if explained:
-        smaller = [described, *fewest([described, *fits], parameters, pool)]
-        best, dropped = needed(min((*smaller, *fits), key=Score.of([*smaller, *fits])), pool)
-        everything = [*smaller, *fits, *dropped, *in_place(best, fits, parameters, pool)]
-    else:
-        everything = [described, *fits]
+    whole, everything = list(fits), [described, *fits]
+    if not explained:
         sure = {name for name, each in surest(everything).items() if each.confidence >= least(name)}
-        best = min((fit for fit in fits if key(fit) <= sure), key=lambda fit: fit.chi2)
+        whole = [min((fit for fit in fits if key(fit) <= sure), key=lambda fit: fit.chi2)]
+    everything += fewest([described, *whole], parameters, pool)
+    able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
+    best = Score.of(able).best(able)
+    if len(best.explanation.drifted) > 1:
+        alike = list(aliases(next(fit for fit in whole if key(fit) == key(best))))
+        alike += fewest([described, *alike], parameters, pool)
+        everything += alike
+        able += [fit for fit in alike if explained or surely(fit, everything)]
+        best = Score.of(able).best(able)
+    best, dropped = needed(best, pool)
+    everything += [*dropped, *in_place(best, whole, parameters, pool)]
     score = Score.of([best, *everything])
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
@@ -157,6 +166,12 @@ class Score:
     def __call__(self, fit: Fit) -> float:
         """What is least for the explanation that is chosen."""
         return self.lack(fit.chi2) + SIGNIFICANT * fit.size
+
+    def best(self, fits: Sequence[Fit]) -> Fit:
+        """The fit that is chosen; of those as good that change no more quantities, one with the fewest effects."""
+        first = min(fits, key=self)
+        equal = [fit for fit in fits if self.alike(fit, first) and fit.size <= first.size]
+        return min(equal, key=lambda fit: (len(key(fit)), self(fit)))
 
     def alike(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit makes the recordings as likely as the best, but for what is a tie."""
@@ -296,6 +311,11 @@ def names(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
     return {effect: name_of(effect, best, fits, explained) for effect in best.explanation.effects}
 
 
+def surely(fit: Fit, fits: Sequence[Fit]) -> bool:
+    """Whether each effect of a fit that leaves an error is sure enough to be named."""
+    return all(name_of(name, fit, fits).confidence >= least(name) for name in key(fit))
+
+
 def surest(fits: Sequence[Fit]) -> dict[str, Name]:
     """For each effect, or change, the explanation in which it is surest."""
     found: dict[str, Name] = {}
@@ -313,12 +333,12 @@ def least(name: str) -> float:
 
 
 def name_of(name: str, best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
-    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that add no more.
+    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that change no more.
 
-    What explains all takes the whole error, whatever others leave; its rivals change no more quantities than it does.
+    What explains all takes the whole error, whatever others leave.
     """
     others = [fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best))]
-    simple = [fit for fit in others if fit.size <= best.size] if explained else others
+    simple = [fit for fit in others if fit.size <= best.size]
     rival = min(simple or others, key=lambda fit: fit.chi2)
     share = 1.0 if explained else taken(rival, best)
     return Name(better(rival, best) * share, best, rival)

@@ -14,7 +14,7 @@ from pierburg_ros.inference.choice import Choice, chosen
 from pierburg_ros.inference.data import data_of
 from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.inference.fit import Effort, Fitter, ladder
-from pierburg_ros.inference.search import Progress, Search, aliases, free_parameters, key, searched
+from pierburg_ros.inference.search import Progress, Search, aliases, free_parameters, searched
 from pierburg_ros.inference.shortlist import Span, forms, independent
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -61,8 +61,5 @@ def infer(
     with workers(jobs) as pool:
         search = Search(balance, independent(fitter, balance, free), forms(data, nominal, span), pool, tell)
         fits = searched(fitter, search)
-        choice = chosen(fits, free, pool)
-        if len(choice.chosen.explanation.drifted) > 1 and choice.explained:
-            own = next(fit for fit in fits if key(fit) == key(choice.chosen))
-            choice = chosen([*fits, *aliases(own, search)], free, pool)
+        choice = chosen(fits, free, pool, lambda fit: aliases(fit, search))
     return Inferred(choice, balance, search.candidates, free, search.drifts, effort)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -175,15 +176,24 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
 
 
 def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
-    """The best promises of each of so many `effects`, in the order of their best, but for what promises little."""
+    """The best promises of each of so many `effects`, in turn the best by simulation and by the balance.
+
+    What promises little by either is left out.
+    """
+    orders = (ordered(promised, lambda each: each.simulated), ordered(promised, lambda each: each.along))
     groups: dict[str, list[Promise]] = {}
-    for promise in promised:
-        if promise.share < PROMISING * promised[0].share:
-            break
-        group = groups.setdefault(promise.variant.effect, [])
-        if not any(promise.equals(other) for other in group):
-            group.append(promise)
-    return [promise for group in list(groups.values())[:effects] for promise in group[:STARTS]]
+    for pair in itertools.zip_longest(*orders):
+        for promise in pair:
+            group = groups.setdefault(promise.variant.effect, []) if promise else []
+            if promise and len(group) < STARTS and not any(promise.equals(other) for other in group):
+                group.append(promise)
+    return [promise for group in list(groups.values())[:effects] for promise in group]
+
+
+def ordered(promised: Sequence[Promise], share: Callable[[Promise], float]) -> list[Promise]:
+    """The promises by a `share`, the largest first, but for those that promise little by it."""
+    most = max(map(share, promised), default=0.0)
+    return sorted((each for each in promised if share(each) > PROMISING * most), key=share, reverse=True)
 
 
 def best_of_support(fits: Iterable[Fit]) -> list[Fit]:

@@ -3,8 +3,9 @@
 The balance screens hundreds of starts of an effect that acts along the motion, and says what share of its error each
 takes. A simulation of the best, and of every start of an effect that shows at rests, reversals and stops, is then
 compared with the residual of a pulled fit: what share of its error does it take, beside changes of all values that are
-free already? The larger share counts: an error at one moment stays there in the balance, and rests show in a simulation
-only. Its job is never to lose the truth; fits decide.
+free already? Neither share can be held against the other: an error at one moment stays there in the balance, rests show
+in a simulation only, and noise fills the balance. So both orders count. Their job is never to lose the truth; fits
+decide.
 """
 
 from __future__ import annotations
@@ -42,15 +43,17 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class Promise:
-    """A start of an added effect: all values by dotted name, and the `share` of the error that it promises to take.
+    """A start of an added effect: all values by dotted name, and the shares of the error that it promises to take.
 
-    `own` is the share, 0 to 1, of what the effect changes that no change of the values which are free already makes.
-    `balanced` are all values by the balance with the effect acting.
+    `simulated` is that of a pulled fit by one linear step, `along` that of the balance. `own` is the share, 0 to 1, of
+    what the effect changes that no change of the values which are free already makes. `balanced` are all values by the
+    balance with the effect acting.
     """
 
     variant: Variant
     values: dict[str, float]
-    share: float
+    simulated: float
+    along: float
     own: float
     balanced: dict[str, float]
 
@@ -144,7 +147,7 @@ def promises(
     candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
     pool: Executor,
 ) -> list[Promise]:
-    """What each of the `candidates` promises on top of a `fit`, the most first."""
+    """What each of the `candidates` promises on top of a `fit`."""
     nominal = fit.fitter.nominal
     base = fit.explanation.drifted
     acting = fit.explanation.effects
@@ -166,7 +169,7 @@ def promises(
             # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
             groups.append((variant, begun if share > 1.0 / left.size else group, settled, share))
     found = pool.map(lambda group: _promise(fit, *group), groups)
-    return sorted((each for each in found if each is not None), key=lambda each: -each.share)
+    return [each for each in found if each is not None]
 
 
 def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
@@ -276,12 +279,9 @@ def _settled(
 
 
 def _promise(
-    fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float], share: float
+    fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float], along: float
 ) -> Promise | None:
-    """What one linear step along some starts foretells, or the balance's `share` if that is more.
-
-    None where the effect cannot be added to the fit.
-    """
+    """What one linear step along some starts foretells; None where the effect cannot be added to the fit."""
     fitter, before, columns = fit.fitter, fit.fitted, []
     samples = fitter.data.train
     for start in group:
@@ -295,8 +295,8 @@ def _promise(
     own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
     scale, fall = _step(changed, beside(before, fit.basis), _limit(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
-    share = max(share, fall / max(fit.chi2, 1e-300))
-    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), share, own, settled)
+    simulated = fall / max(fit.chi2, 1e-300)
+    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), simulated, along, own, settled)
 
 
 def _step(columns: Signal, left: Signal, limit: float) -> tuple[Signal, float]:
