@@ -54,7 +54,8 @@ def covariance_of(jacobian: Signal, residuals: tuple[Signal, ...]) -> Covariance
     scores = block_scores(jacobian, residuals, 4 * length)
     blocks = len(scores)
     middle = scores.T @ scores * blocks / max(blocks - 1, 1)
-    factor = float(stdtrit(max(blocks - jacobian.shape[1], 1), 0.975))
+    pieces = max(float(blocks), residual.size / repetition(residual))
+    factor = float(stdtrit(max(pieces - jacobian.shape[1], 1.0), 0.975))
     return Covariance(inverse @ middle @ inverse, undetermined, factor, variance**0.5, False, blocks)
 
 
