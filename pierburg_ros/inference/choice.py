@@ -111,8 +111,9 @@ def chosen(
     described = fitter.fit(Explanation(), nominal.values, 0)
     whole, everything = list(fits), [described, *fits]
     if not explained:
-        sure = {name for name, each in surest(everything).items() if each.confidence >= least(name)}
-        whole = [min((fit for fit in fits if key(fit) <= sure), key=lambda fit: fit.chi2)]
+        # where an error remains only what the recordings tell apart may follow it
+        parameters, named = next(fit for fit in fits if bare(fit)).explanation.drifted, sure(everything)
+        whole = [min((fit for fit in fits if key(fit) <= named), key=lambda fit: fit.chi2)]
     everything += fewest([described, *whole], parameters, pool)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able)
@@ -120,7 +121,8 @@ def chosen(
         alike = list(aliases(next(fit for fit in whole if key(fit) == key(best))))
         alike += fewest([described, *alike], parameters, pool)
         everything += alike
-        able += [fit for fit in alike if explained or surely(fit, everything)]
+        named = sure(everything)
+        able += [fit for fit in alike if explained or key(fit) <= named]
         best = Score.of(able).best(able)
     best, dropped = needed(best, pool)
     everything += [*dropped, *in_place(best, whole, parameters, pool)]
@@ -148,16 +150,22 @@ def bare(fit: Fit) -> bool:
 
 @dataclass(frozen=True)
 class Score:
-    """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of quantities."""
+    """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of a quantity."""
 
     effective: float
     least: float
+    price: float
 
     @staticmethod
     def of(fits: Sequence[Fit]) -> Score:
-        """The score of some fits to the same samples."""
+        """The score of some fits to the same samples.
+
+        Where an error remains in all, names have a threshold of their own, and a quantity has to pay for itself alone
+        (Schwarz, Estimating the dimension of a model, 1978).
+        """
         least = min(fits, key=lambda fit: fit.chi2)
-        return Score(least.fitted.size / least.repetition, least.chi2)
+        effective = least.fitted.size / least.repetition
+        return Score(effective, least.chi2, SIGNIFICANT if adequate(least) else math.log(max(effective, math.e)))
 
     def lack(self, chi2: float) -> float:
         """How much less likely the recordings are than by the best fit."""
@@ -165,7 +173,7 @@ class Score:
 
     def __call__(self, fit: Fit) -> float:
         """What is least for the explanation that is chosen."""
-        return self.lack(fit.chi2) + SIGNIFICANT * fit.size
+        return self.lack(fit.chi2) + self.price * fit.size
 
     def best(self, fits: Sequence[Fit]) -> Fit:
         """The fit that is chosen; of those as good that change no more quantities, one with the fewest effects."""
@@ -187,7 +195,7 @@ def fewest(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> li
     parabolas = list(pool.map(lambda fit: Parabola.of(fit, parameters), fits[1:]))
     for size in range(len(parameters) + DEEPEST + 1):
         best = min(map(score, found))
-        able = [each for each in parabolas if score.lack(each.fit.chi2) + SIGNIFICANT * size < best + TIED]
+        able = [each for each in parabolas if score.lack(each.fit.chi2) + score.price * size < best + TIED]
         if not able:
             break
         found += fitted(((each, explanation) for each in able for explanation in each.best_of_size(size)), pool)
@@ -311,9 +319,9 @@ def names(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
     return {effect: name_of(effect, best, fits, explained) for effect in best.explanation.effects}
 
 
-def surely(fit: Fit, fits: Sequence[Fit]) -> bool:
-    """Whether each effect of a fit that leaves an error is sure enough to be named."""
-    return all(name_of(name, fit, fits).confidence >= least(name) for name in key(fit))
+def sure(fits: Sequence[Fit]) -> set[str]:
+    """The effects, and changes, that are sure enough to be named where an error remains."""
+    return {name for name, each in surest(fits).items() if each.confidence >= least(name)}
 
 
 def surest(fits: Sequence[Fit]) -> dict[str, Name]:
