@@ -105,9 +105,9 @@ ROOMS = {
         "covariance": {"evidence"},
         "intervals": {"coordinates", "covariance", "evidence", "explanation", "fit", "slopes"},
         "polish": {"covariance", "fit", "intervals"},
-        "shortlist": {"balance", "coordinates", "data", "explanation", "fit", "intervals", "least_squares"},
+        "shortlist": {"balance", "coordinates", "data", "evidence", "explanation", "fit", "intervals", "least_squares"},
         "changes": {"balance", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
-        "search": {"balance", "changes", "explanation", "fit", "least_squares", "shortlist"},
+        "search": {"balance", "changes", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
         "choice": {"evidence", "explanation", "fit", "polish", "search", "shortlist"},
     },
     "nodes": {

@@ -47,7 +47,10 @@ UNDIVIDED = Shares(None, {}, None)
 
 def fit(explanation: Explanation = PLAY, ratio: float = 1.0, shape: object = None) -> SimpleNamespace:
     """What the words read of a fit."""
-    return SimpleNamespace(explanation=explanation, ratio=ratio, model=SimpleNamespace(residual_torque=shape))
+    values = {"coulomb_friction": 0.25, "backlash.gap": 0.04} if explanation.size else {"coulomb_friction": 0.2}
+    nominal = SimpleNamespace(values={"coulomb_friction": 0.2, "backlash.gap": 0.0})
+    model = SimpleNamespace(residual_torque=shape, values=values)
+    return SimpleNamespace(explanation=explanation, ratio=ratio, model=model, fitter=SimpleNamespace(nominal=nominal))
 
 
 def found(verdict: str = "unexplained", written=None, shares=UNDIVIDED, stopped_by=None, actuator=PIERBURG):
@@ -133,6 +136,7 @@ def test_a_model_that_is_not_that_of_the_verdict_is_said() -> None:
     assert "handed out is the model as described:" in handed_out(found(written=fit(Explanation())))
     one = handed_out(found(written=fit(shape={})))
     assert "handed out is one with coulomb friction + backlash and a map of the missing torque: of all" in one
+    assert one.endswith("no fit has seen (coulomb friction 0.25, backlash: gap 0.04).")
 
 
 @pytest.mark.parametrize(
