@@ -110,7 +110,12 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
 
 
 def aliases(fit: Fit, search: Search) -> list[Fit]:
-    """A fit with an effect added that may stand for its drifts: what equals them, and what promises most beside."""
+    """A fit with an effect added that may stand for its drifts: what equals them, and what promises most beside.
+
+    None where the effort is spent.
+    """
+    if fit.fitter.effort.over:
+        return []
     search.tell(f"what equals the drifts beside {label(fit)}")
     few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
     promised = promises(fit, search.balance, few, search.pool)
