@@ -118,18 +118,21 @@ def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
     if not known:
         return None
     mark = max(each.mark for _, each in known)
-    if len(known) < len(every) or any(each.factor is None for _, each in known):
+    if len(known) < len(every):
         return Seen(None, mark)
     weakest = min if cases[0].above else max
-    case, linear = weakest(known, key=lambda each: each[0].at(each[1].factor or 0.0)[each[0].parameter])
+    case, linear = weakest(known, key=lambda each: abs(each[0].at(each[1].factor)[each[0].parameter]))
     return Seen(_followed(fit, case, linear), mark)
 
 
 @dataclass(frozen=True)
 class _Linear:
-    """The factor of a start that linear steps of the parameters exclude, if any, its mark, and the chi2 that allows."""
+    """The factor of a start that linear steps of the parameters exclude, infinite for none, with its mark.
 
-    factor: float | None
+    A fit that leaves less than the chi2 `possible` allows the factor.
+    """
+
+    factor: float
     mark: float
     possible: float = math.inf
 
@@ -148,11 +151,11 @@ def _linear(fit: Fit, case: Case) -> _Linear | None:
         if step == 0:
             mark = size / counts_as_one
         if size <= 0.0:
-            return _Linear(None, mark)
+            return _Linear(math.inf, mark)
         best = max(-float(change @ left) / size, 0.0)
         following = max(best + math.sqrt(allowed / size), least)
         if following > largest:
-            return _Linear(None, mark)
+            return _Linear(math.inf, mark)
         found = abs(math.log(following / factor)) < SETTLED
         factor = following
         if found:
@@ -162,14 +165,13 @@ def _linear(fit: Fit, case: Case) -> _Linear | None:
 
 def _followed(fit: Fit, case: Case, linear: _Linear) -> Limit | None:
     """The limit that holds although the parameters follow by short fits; None where nothing is excluded."""
-    assert linear.factor is not None
     factor, (_, largest) = linear.factor, case.factors(fit)
     for _ in range(RAISED):
+        if factor > largest:
+            break
         if not _fits(fit, case, factor, linear.possible):
             return _limit(fit, case, factor)
         factor *= WIDENED
-        if factor > largest:
-            break
     return None
 
 

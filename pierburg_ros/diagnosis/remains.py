@@ -62,10 +62,9 @@ class Lacking:
 def lacking(fit: Fit, balance: Balance) -> Lacking:
     """The torque that a `fit` lacks, its parameters as the balance would have them beside its effects."""
     nominal, actuator, acting = fit.fitter.nominal, fit.fitter.data.actuator, fit.explanation.effects
-    base = fit.explanation.drifted
     # what shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them
     along = [each for each in fit.explanation.variants if EFFECT[each.effect].along and not EFFECT[each.effect].mark]
-    names = (*base, *(f"{each.effect}.{name}" for each in along for name in each.free))
+    names = (*fit.explanation.drifted, *(f"{each.effect}.{name}" for each in along for name in each.free))
     values, inside = balanced(balance, nominal, names, fit.values, acting)
     basis, _ = projected(inside, nominal, names, values, acting)
     scale = np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in inside.motions])
@@ -73,10 +72,11 @@ def lacking(fit: Fit, balance: Balance) -> Lacking:
     def joined(part: Callable[[Motion], Signal]) -> Signal:
         return np.concatenate([part(motion) for motion in inside.motions])
 
+    torque = joined(lambda motion: missing(motion, values, acting))
     # a basis of commands is one of torques where the torque of a command is the same everywhere
     basis = np.linalg.qr(basis * scale[:, np.newaxis])[0] if basis.size else basis
     return Lacking(
-        torque=(torque := joined(lambda motion: missing(motion, values, acting))),
+        torque=torque,
         own=joined(lambda motion: missing(motion, fit.values, acting)),
         angle=joined(lambda motion: motion.angle if actuator.quantity != "speed" else np.zeros(motion.samples.size)),
         velocity=joined(lambda motion: motion.velocity),

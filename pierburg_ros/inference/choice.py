@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -112,8 +112,8 @@ def chosen(
     whole, everything = list(fits), [described, *fits]
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
-        parameters, named = next(fit for fit in fits if bare(fit)).explanation.drifted, sure(everything)
-        whole = [min((fit for fit in fits if key(fit) <= named), key=lambda fit: fit.chi2)]
+        parameters = next(fit for fit in fits if bare(fit)).explanation.drifted
+        whole = [min(named_alone(fits, everything), key=lambda fit: fit.chi2)]
     everything += fewest([described, *whole], parameters, pool)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able)
@@ -121,12 +121,12 @@ def chosen(
         alike = list(aliases(next(fit for fit in whole if key(fit) == key(best))))
         alike += fewest([described, *alike], parameters, pool)
         everything += alike
-        named = sure(everything)
-        able += [fit for fit in alike if explained or key(fit) <= named]
+        able += alike if explained else named_alone(alike, everything)
         best = Score.of(able).best(able)
     best, dropped = needed(best, pool)
     everything += [*dropped, *in_place(best, whole, parameters, pool)]
     score = Score.of([best, *everything])
+    own, others = names(best, everything, explained)
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
@@ -137,8 +137,8 @@ def chosen(
         described=known[0],
         estimated=next(fit for fit in weakest if bare(fit)),
         fits=(handed, *known),
-        names=names(best, everything, explained),
-        doubted=doubted(best, everything, explained),
+        names=own,
+        doubted=others,
         ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )
 
@@ -312,26 +312,44 @@ def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:
     return min(fits, key=lambda fit: rms_of(fit, samples))
 
 
-def names(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
-    """How sure each effect of the `best` fit is: by that fit or, where something remains, by any that has it."""
-    if not explained:
-        return {name: each for name, each in surest(fits).items() if name in best.explanation.effects}
-    return {effect: name_of(effect, best, fits, explained) for effect in best.explanation.effects}
+def names(best: Fit, fits: Sequence[Fit], explained: bool) -> tuple[dict[str, Name], dict[str, Name]]:
+    """How sure each effect of the `best` fit is, and how sure others that gain something, the surest first.
+
+    Where something remains, any fit that has an effect may tell how sure it is. What explains all leaves to others the
+    chance that it is the worse one.
+    """
+    own = best.explanation.effects
+    if explained:
+        mine = {effect: name_of(effect, best, fits, explained) for effect in own}
+        found = surest(
+            (effect, Name(1.0 - better(fit, best), fit, best)) for fit in fits for effect in fit.explanation.effects
+        )
+    else:
+        found = surest(judged(fits))
+        mine = {effect: found[effect] for effect in own}
+    doubted = (
+        (name, each) for name, each in found.items() if name in EFFECT and name not in own and each.confidence > 0.0
+    )
+    return mine, dict(sorted(doubted, key=lambda each: -each[1].confidence))
 
 
-def sure(fits: Sequence[Fit]) -> set[str]:
-    """The effects, and changes, that are sure enough to be named where an error remains."""
-    return {name for name, each in surest(fits).items() if each.confidence >= least(name)}
+def named_alone(several: Sequence[Fit], fits: Sequence[Fit]) -> list[Fit]:
+    """Those of `several` whose effects, and changes, all are sure enough to be named where an error remains."""
+    sure = {name for name, each in surest(judged(fits)).items() if each.confidence >= least(name)}
+    return [fit for fit in several if key(fit) <= sure]
 
 
-def surest(fits: Sequence[Fit]) -> dict[str, Name]:
-    """For each effect, or change, the explanation in which it is surest."""
+def judged(fits: Sequence[Fit]) -> Iterator[tuple[str, Name]]:
+    """Each effect, or change, of each fit, and how sure that fit makes it."""
+    return ((name, name_of(name, fit, fits)) for fit in fits for name in sorted(key(fit)))
+
+
+def surest(judged: Iterable[tuple[str, Name]]) -> dict[str, Name]:
+    """The surest of several judgements of each effect, or change; the first of equals."""
     found: dict[str, Name] = {}
-    for fit in fits:
-        for name in key(fit):
-            each = name_of(name, fit, fits)
-            if name not in found or each.confidence > found[name].confidence:
-                found[name] = each
+    for name, each in judged:
+        if name not in found or each.confidence > found[name].confidence:
+            found[name] = each
     return found
 
 
@@ -368,20 +386,6 @@ def taken(worse: Fit, fit: Fit) -> float:
     if before <= 0.0 or worse.ratio < EXPLAINED:
         return 0.0
     return min(max(1.0 - after / before, 0.0), 1.0)
-
-
-def doubted(best: Fit, fits: Sequence[Fit], explained: bool) -> dict[str, Name]:
-    """Effects that are not chosen and leave less than what the chosen explanation or less has, the surest first."""
-    found: dict[str, Name] = {}
-    for fit in fits:
-        for effect in set(fit.explanation.effects) - set(best.explanation.effects):
-            name = name_of(effect, fit, fits)
-            if explained:
-                # the chosen one explains all, so what is left to others is the chance that it is the worse one
-                name = replace(name, confidence=1.0 - better(fit, best), rival=best)
-            if name.confidence > (found[effect].confidence if effect in found else 0.0):
-                found[effect] = name
-    return dict(sorted(found.items(), key=lambda each: -each[1].confidence))
 
 
 def ties(best: Fit, alike: Sequence[Fit]) -> dict[str, tuple[tuple[str, ...], ...]]:

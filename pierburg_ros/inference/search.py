@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass
 
 from pierburg_ros.effects import DECLARED, EFFECT
+from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
 from pierburg_ros.inference.coordinates import in_order
@@ -133,17 +135,20 @@ def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
 def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
     """Short fits from each of the promises on top of a fit.
 
-    Drifts begin as in the fit, by the balance, and as described. Where events jump each of these may end elsewhere;
-    otherwise the nearest does.
+    Drifts begin as in the fit, by the balance, and as described, where a model can. Where events jump each of these may
+    end elsewhere; otherwise the nearest does.
     """
-    described = {name: fit.fitter.nominal.values[name] for name in fit.explanation.drifted}
+    fitter = fit.fitter
+    described = {name: fitter.nominal.values[name] for name in fit.explanation.drifted}
 
     def one(promise: Promise) -> Fit:
-        explanation = fit.explanation.plus(promise.variant)
-        starts = promise.values, promise.balanced, in_order({**promise.values, **described}, fit.fitter.nominal)
-        begun = sorted((fit.fitter.fit(explanation, start, 0) for start in starts), key=lambda each: each.chi2)
+        explanation, begun = fit.explanation.plus(promise.variant), []
+        for start in (promise.values, promise.balanced, in_order({**promise.values, **described}, fitter.nominal)):
+            with suppress(InputError):
+                begun.append(fitter.fit(explanation, start, 0))
+        begun.sort(key=lambda each: each.chi2)
         several = begun if jumps(explanation) else begun[:1]
-        return min((fit.fitter.fit(explanation, each.values, BRIEF) for each in several), key=lambda each: each.chi2)
+        return min((fitter.fit(explanation, each.values, BRIEF) for each in several), key=lambda each: each.chi2)
 
     return list(search.pool.map(one, promised))
 
@@ -187,11 +192,10 @@ def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
     """
     orders = (ordered(promised, lambda each: each.simulated), ordered(promised, lambda each: each.along))
     groups: dict[str, list[Promise]] = {}
-    for pair in itertools.zip_longest(*orders):
-        for promise in pair:
-            group = groups.setdefault(promise.variant.effect, []) if promise else []
-            if promise and len(group) < STARTS and not any(promise.equals(other) for other in group):
-                group.append(promise)
+    for promise in filter(None, itertools.chain.from_iterable(itertools.zip_longest(*orders))):
+        group = groups.setdefault(promise.variant.effect, [])
+        if len(group) < STARTS and not any(promise.equals(other) for other in group):
+            group.append(promise)
     return [promise for group in list(groups.values())[:effects] for promise in group]
 
 
