@@ -101,8 +101,13 @@ def seen(fit: Fit, candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
     for variant, starts in candidates:
         strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
         if variant.effect not in fit.explanation.effects and len(strengths) == 1:
-            able = [start for start in starts if start[strengths[0]] != 0.0]
-            some = able[:: max(math.ceil(len(able) / EXAMINED), 1)]
+            # what differs in strength alone is one start
+            apart = {
+                tuple(value for name, value in start.items() if name != strengths[0]): start
+                for start in starts
+                if start[strengths[0]] != 0.0
+            }
+            some = list(apart.values())[:: max(math.ceil(len(apart) / EXAMINED), 1)]
             cases.setdefault(variant.effect, []).extend(Case(variant, start, strengths[0]) for start in some)
     found = pool.map(lambda several: _of_effect(fit, several), cases.values())
     return {effect: each for effect, each in zip(cases, found, strict=True) if each is not None}
@@ -192,13 +197,16 @@ def _values(fit: Fit, case: Case, factor: float) -> dict[str, float]:
 
 
 def _fits(fit: Fit, case: Case, factor: float, possible: float) -> bool:
-    """Whether the parameters can make a strength possible: a short fit beside it ends below a `possible` chi2."""
-    effect = EFFECT[case.variant.effect]
+    """Whether parameters, and the effect's other numbers, can make a strength possible: a short fit is below a chi2."""
+    effect, strength = EFFECT[case.variant.effect], case.parameter
     if any(parameter.above for parameter in effect.parameters):
         # what is counted from a parameter would vanish in a fit of that parameter
         return False
+    others = tuple(name for name in case.variant.free if name != strength)
+    held = Variant(effect.id, others, (*case.variant.fixed, (strength, case.at(factor)[strength])))
+    values = in_order(_values(fit, case, factor), fit.fitter.nominal)
     try:
-        beside = fit.fitter.fit(fit.explanation, in_order(_values(fit, case, factor), fit.fitter.nominal), FOLLOWING)
+        beside = fit.fitter.fit(fit.explanation.plus(held), values, FOLLOWING)
     except InputError:
         return False
     return beside.chi2 <= possible

@@ -12,6 +12,7 @@ from support.recordings import NOMINAL, data_on, recording
 from pierburg_ros.diagnosis.found import doubtful
 from pierburg_ros.diagnosis.limits import ONE_SIDED, SETTLED, WIDENED, seen
 from pierburg_ros.inference.choice import Choice
+from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fitter, ladder
 
@@ -146,6 +147,18 @@ def test_an_effect_that_is_there_at_half_the_limit_is_not_excluded(without, vari
     true = 0.5 * without[variant.effect]
     found = limit(recording({f"{variant.effect}.{name}": true}, 12.0, seed), variant, name, start)
     assert found is None or found >= true
+
+
+def test_what_shows_only_with_some_of_its_other_numbers_is_not_excluded_with_others():
+    """Play shows nothing while the motor's friction is small beside the spring, which keeps the teeth together."""
+    true = {"backlash.gap": 0.09, "backlash.motor_friction_share": 0.47}
+    backlash = Variant("backlash", ("gap", "motor_friction_share"))
+    starts = [{"gap": gap, "motor_friction_share": share} for gap in (0.01, 0.03, 0.05) for share in (0.1, 0.47)]
+    data = data_on(recording(true, 12.0, duties=(-0.03, 0.36)))
+    fit = Fitter(data, NOMINAL, ladder(data)[0]).fit(Explanation(("coulomb_friction",)), NOMINAL.values)
+    assert fit.ratio < EXPLAINED
+    found = limit_of(fit, backlash, starts)["backlash"].limit
+    assert found is None or found.value > 0.09
 
 
 def test_limits_are_far_below_what_is_plausible(without):
