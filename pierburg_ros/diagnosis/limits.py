@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.actuators import Scales
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -26,11 +27,11 @@ from pierburg_ros.inference.shortlist import added
 ONE_SIDED = 2.71
 """Fall of -2 log likelihood at a strength that is excluded at 95 %, one-sided. Derived: the square of 1.645, the 95 %
 quantile of the normal distribution."""
-EXAMINED = 3
-"""Starts of one way to act that are examined: places, frequencies, phases. Work: each costs up to `STRENGTHS_TRIED`
-simulations; the weakest of their limits counts."""
-STRENGTHS_TRIED = 4
-"""Strengths that are simulated for one start. Derived: the cost rises about with the square of the strength, so each
+EXAMINED = 8
+"""Starts of one way to act that are examined: places, frequencies, phases. Work: each costs a simulation, the weakest
+of their limits counts."""
+STRENGTHS_TRIED = 3
+"""Further strengths that are simulated for it. Derived: the cost rises about with the square of the strength, so each
 simulation gives the next one."""
 SETTLED = 0.1
 """Relative change of a strength below which it is found. Chosen: a limit is told with two digits."""
@@ -101,24 +102,40 @@ def seen(fit: Fit, candidates: Sequence[tuple[Variant, list[dict[str, float]]]],
     for variant, starts in candidates:
         strengths = [name for name in EFFECT[variant.effect].strength if name in variant.free]
         if variant.effect not in fit.explanation.effects and len(strengths) == 1:
-            # what differs in strength alone is one start
-            apart = {
-                tuple(value for name, value in start.items() if name != strengths[0]): start
-                for start in starts
-                if start[strengths[0]] != 0.0
-            }
-            some = list(apart.values())[:: max(math.ceil(len(apart) / EXAMINED), 1)]
-            cases.setdefault(variant.effect, []).extend(Case(variant, start, strengths[0]) for start in some)
+            few = spaced(apart(starts, variant, strengths[0], fit.fitter.nominal.scales))
+            cases.setdefault(variant.effect, []).extend(Case(variant, start, strengths[0]) for start in few)
     found = pool.map(lambda several: _of_effect(fit, several), cases.values())
     return {effect: each for effect, each in zip(cases, found, strict=True) if each is not None}
+
+
+def apart(starts: Sequence[Start], variant: Variant, strength: str, scales: Scales) -> list[Start]:
+    """The starts whose other numbers are plausible, all if none are; what differs in `strength` alone is one start."""
+    declared = {name: EFFECT[variant.effect].parameter(name).expected(scales) for name in variant.free}
+    several = {
+        tuple(value for name, value in start.items() if name != strength): start
+        for start in starts
+        if start[strength] != 0.0
+    }.values()
+    likely = [
+        start
+        for start in several
+        if all(low <= start[name] <= high for name, (low, high) in declared.items() if name != strength)
+    ]
+    return likely or list(several)
+
+
+def spaced(starts: Sequence[Start]) -> list[Start]:
+    """`EXAMINED` of some starts, as far apart as they are listed."""
+    number = min(len(starts), EXAMINED)
+    return [starts[round(place)] for place in np.linspace(0.0, len(starts) - 1, number)]
 
 
 def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
     """The weakest limit and the largest mark over the ways in which one effect may act by one of its strengths.
 
-    The parameters follow the weakest by linear steps: the others are excluded before it.
+    The parameters follow the weakest by further steps, and by fits: the others are excluded before it.
     """
-    every = [(case, _linear(fit, case)) for case in cases if case.parameter == cases[0].parameter]
+    every = [(case, _linear(fit, case, 1.0)) for case in cases if case.parameter == cases[0].parameter]
     known = [(case, each) for case, each in every if each is not None]
     if not known:
         return None
@@ -132,7 +149,7 @@ def _of_effect(fit: Fit, cases: Sequence[Case]) -> Seen | None:
 
 @dataclass(frozen=True)
 class _Linear:
-    """The factor of a start that linear steps of the parameters exclude, infinite for none, with its mark.
+    """The factor of a start that a linear step of the parameters excludes, infinite for none, with its mark.
 
     A fit that leaves less than the chi2 `possible` allows the factor.
     """
@@ -142,35 +159,34 @@ class _Linear:
     possible: float = math.inf
 
 
-def _linear(fit: Fit, case: Case) -> _Linear | None:
-    """The strength that is excluded by linear steps; None where the effect cannot be added to the model."""
+def _linear(fit: Fit, case: Case, factor: float) -> _Linear | None:
+    """The strength that a linear step from one at a `factor` excludes; None where the effect cannot be added."""
     least, largest = case.factors(fit)
     left, counts_as_one = beside(fit.fitted, fit.basis), fit.repetition * max(fit.ratio**2, 1.0)
     allowed = ONE_SIDED * counts_as_one
-    factor, mark = 1.0, 0.0
-    for step in range(STRENGTHS_TRIED):
-        change = _change(fit, case, factor)
-        if change is None:
-            return None
-        size = float(change @ change)
-        if step == 0:
-            mark = size / counts_as_one
-        if size <= 0.0:
-            return _Linear(math.inf, mark)
-        best = max(-float(change @ left) / size, 0.0)
-        following = max(best + math.sqrt(allowed / size), least)
-        if following > largest:
-            return _Linear(math.inf, mark)
-        found = abs(math.log(following / factor)) < SETTLED
-        factor = following
-        if found:
-            break
-    return _Linear(factor, mark, fit.chi2 - size * best**2 + allowed)
+    change = _change(fit, case, factor)
+    if change is None:
+        return None
+    size = float(change @ change)
+    if size <= 0.0:
+        return _Linear(math.inf, 0.0)
+    best = max(-float(change @ left) / size, 0.0)
+    following = max(best + math.sqrt(allowed / size), least)
+    excluded = following if following <= largest else math.inf
+    return _Linear(excluded, size / counts_as_one, fit.chi2 - size * best**2 + allowed)
 
 
 def _followed(fit: Fit, case: Case, linear: _Linear) -> Limit | None:
     """The limit that holds although the parameters follow by short fits; None where nothing is excluded."""
     factor, (_, largest) = linear.factor, case.factors(fit)
+    for _ in range(STRENGTHS_TRIED):
+        further = _linear(fit, case, factor) if math.isfinite(factor) else None
+        if further is None:
+            return None
+        settled = abs(math.log(further.factor / factor)) < SETTLED
+        linear, factor = further, further.factor
+        if settled:
+            break
     for _ in range(RAISED):
         if factor > largest:
             break
