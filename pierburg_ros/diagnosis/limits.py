@@ -2,7 +2,7 @@
 
 The strength is raised until the likelihood has fallen by what 95 % allows (profile likelihood), while the parameters
 follow: by a linear step, and by a short fit where that is possible. A residual that is larger than the noise, or
-correlated in time, counts as much less as it says.
+correlated in time, counts as much less as it says. What remains unexplained may hide an effect as large as itself.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.fit import Fit, excess
 from pierburg_ros.inference.least_squares import beside
 from pierburg_ros.inference.shortlist import added
 
@@ -163,7 +163,7 @@ def _linear(fit: Fit, case: Case, factor: float) -> _Linear | None:
     """The strength that a linear step from one at a `factor` excludes; None where the effect cannot be added."""
     least, largest = case.factors(fit)
     left, counts_as_one = beside(fit.fitted, fit.basis), fit.repetition * max(fit.ratio**2, 1.0)
-    allowed = ONE_SIDED * counts_as_one
+    allowed = ONE_SIDED * counts_as_one + excess(fit) * fit.fitted.size
     change = _change(fit, case, factor)
     if change is None:
         return None

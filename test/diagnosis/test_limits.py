@@ -56,6 +56,7 @@ class Linear:
             chi2=float(beside @ beside),
             ratio=math.sqrt(float(beside @ beside) / SAMPLES),
             repetition=1.0,
+            structure=0.0,
         )
 
 
@@ -83,17 +84,15 @@ def test_the_limit_of_a_linear_model_is_the_one_of_least_squares(true):
     assert found.mark == pytest.approx((0.02 / deviation) ** 2, rel=1e-6)
 
 
-def test_an_error_that_remains_widens_a_limit_by_its_size():
+def test_what_remains_may_hide_an_effect_as_large_as_itself():
+    """Noise that is five times what it should be may be the noise and an effect's, with the opposite sign."""
     noise = np.random.default_rng(8).standard_normal(SAMPLES)
-    values = {**NOMINAL.values, COEFFICIENT: 0.0}
-    quiet, loud = (
-        limit_of(
-            Linear(size * (noise - COLUMN * (COLUMN @ noise) / (COLUMN @ COLUMN)), 40.0).fit(Explanation(), values)
-        )
-        for size in (1.0, 5.0)
-    )
-    ratio = loud["viscous_friction"].limit.value / quiet["viscous_friction"].limit.value
-    assert 5.0 / WIDENED * (1.0 - SETTLED) ** 2 < ratio < 5.0 * WIDENED / (1.0 - SETTLED) ** 2
+    noise -= COLUMN * (COLUMN @ noise) / (COLUMN @ COLUMN)
+    loud = Linear(5.0 * noise, 40.0).fit(Explanation(), {**NOMINAL.values, COEFFICIENT: 0.0})
+    left, size = loud.chi2, 40.0 * float(np.linalg.norm(COLUMN - PARAMETERS @ (PARAMETERS.T @ COLUMN)))
+    expected = math.sqrt(left - SAMPLES + ONE_SIDED * left / SAMPLES) / size
+    found = limit_of(loud)["viscous_friction"].limit.value
+    assert (1.0 - SETTLED) * expected <= found <= (1.0 + SETTLED) * WIDENED * expected
 
 
 def test_what_moves_nothing_has_neither_limit_nor_mark():
