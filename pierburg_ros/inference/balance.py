@@ -12,17 +12,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.data import Data
-from pierburg_ros.inference.motion import Motion, motion_of
+from pierburg_ros.inference.motion import KEPT_OF_FILTER, Motion, motion_of
 from pierburg_ros.plant import Model
 
 OUTLYING = 6.0
 """Residual, in median absolute ones, beyond which a sample is left out: it is an event. Derived: of normal errors one
 in 20,000."""
+EVENT = 4 * KEPT_OF_FILTER + 1
+"""Samples around one that tell what lasts there. Derived: an event changes those of two lengths of the filter, which a
+median of four does not see."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +65,14 @@ class Balance:
         return np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in self.motions])
 
     def without_outliers(self, residual: Signal) -> Balance:
-        """The same without the samples in which a `residual` is outlying."""
-        inside = np.abs(residual) <= OUTLYING * np.median(np.abs(residual))
+        """The same without the samples in which a `residual` leaves that around it for an event.
+
+        What lasts longer, as a load for some seconds, is no event.
+        """
         ends = np.cumsum([motion.samples.size for motion in self.motions])[:-1]
-        parts = np.split(inside, ends)
-        kept = (motion.only(part) for motion, part in zip(self.motions, parts, strict=True))
+        parts = [part - median_filter(part, EVENT) for part in np.split(residual, ends)]
+        largest = OUTLYING * np.median(np.abs(np.concatenate(parts)))
+        kept = (motion.only(np.abs(part) <= largest) for motion, part in zip(self.motions, parts, strict=True))
         return Balance(self.actuator, tuple(kept))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,19 +28,20 @@ class Change:
     values: dict[str, float]
 
 
-def changes(fit: Fit, balance: Balance) -> list[Change]:
-    """The change of each drifted parameter of a `fit` that would lower the error of the balance most, best first.
+def changes(fit: Fit, balance: Balance, names: Sequence[str]) -> list[Change]:
+    """The change of each base parameter of `names` that would lower the error of the balance most, best first.
 
-    None for several recordings: a change is at a time of one.
+    Beside the drifts of a `fit`: what they scale with as a whole may still change alone. None for several recordings: a
+    change is at a time of one.
     """
     if len(balance.motions) > 1 or fit.explanation.changed is not None:
         return []
-    nominal, names = fit.fitter.nominal, fit.explanation.drifted
+    nominal, drifted = fit.fitter.nominal, fit.explanation.drifted
     acting = fit.explanation.effects
-    values, inside = balanced(balance, nominal, names, fit.values, acting)
-    coordinates = Coordinates(names, nominal, balance.duration)
+    values, inside = balanced(balance, nominal, drifted, fit.values, acting)
+    coordinates = Coordinates(tuple(names), nominal, balance.duration)
     left, slopes = sloped(inside, nominal, names, values, acting)
-    basis = np.linalg.qr(slopes)[0]
+    basis = np.linalg.qr(slopes[:, [names.index(name) for name in drifted]])[0]
     left = beside(left, basis)
     time, end = inside.motions[0].time, balance.duration
     found = []
@@ -55,6 +57,6 @@ def changes(fit: Fit, balance: Balance) -> list[Change]:
         if name not in best:
             axis = coordinates.axes[names.index(name)]
             after = axis.value(float(np.clip(axis.coordinate(values[name]) + step, axis.lower, axis.upper)))
-            own = Explanation(tuple(n for n in fit.explanation.drifted if n != name), fit.explanation.variants, name)
+            own = Explanation(tuple(n for n in drifted if n != name), fit.explanation.variants, name)
             best[name] = Change(own, {**values, name + AFTER: after, name + WHEN: moment})
     return list(best.values())

@@ -30,6 +30,8 @@ that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
+LOOKED_AT = 2
+"""Iterations after which the changes of each parameter are compared. Work: where they start says too little."""
 MOVES = 2
 """Times that the moment of a change is read off a fit, and the fit made again. Work: the second moves it by samples."""
 ALIAS = 0.05
@@ -83,13 +85,23 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
                 break
             found.update(map(key, new))
             search.tell(f"{label(new[0])}, to the end")
-            led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
+            led = list(search.pool.map(lambda fit: fitted_on(fit, search), new[:BEAM]))
             before, leading = leading[0], nearest(led)
             ended = best_of_support([*ended, *followed(leading, search.pool)])
             ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
             if excess(leading[0]) > WORTH_ADDING * excess(before):
                 break
     return ended
+
+
+def fitted_on(fit: Fit, search: Search) -> Fit:
+    """A leading fit to its end; where events jump also from the drifts that the balance says beside what was found."""
+    fitter, own = fit.fitter, fit.explanation
+    ended = fitter.fit(own, fit.values)
+    if adequate(ended) or not jumps(own):
+        return ended
+    values, _ = balanced(search.balance, fitter.nominal, own.drifted, ended.values, own.effects)
+    return min((ended, fitter.fit(own, in_order(values, fitter.nominal))), key=lambda each: each.chi2)
 
 
 def nearest(fits: Sequence[Fit]) -> list[Fit]:
@@ -154,24 +166,23 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
 
 
 def changed(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits in which one of the drifts of a fit is a change in mid-recording."""
+    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit."""
 
-    def one(change: Change) -> Fit:
-        found = fit.fitter.fit(change.explanation, change.values, BRIEF)
+    fitter = fit.fitter
+
+    def begun(change: Change) -> Fit:
+        return fitter.fit(change.explanation, change.values, LOOKED_AT)
+
+    def one(found: Fit) -> Fit:
+        found = fitter.fit(found.explanation, found.values, BRIEF)
         for _ in range(MOVES):
             assert found.after is not None
-            moved = {
-                **found.values,
-                f"{found.explanation.changed}{WHEN}": found.fitter.moment(found.model, found.after),
-            }
-            found = fit.fitter.fit(change.explanation, moved, BRIEF)
+            when = {f"{found.explanation.changed}{WHEN}": fitter.moment(found.model, found.after)}
+            found = fitter.fit(found.explanation, {**found.values, **when}, BRIEF)
         return found
 
-    def start(change: Change) -> tuple[float, Change]:
-        return fit.fitter.fit(change.explanation, change.values, 0).chi2, change
-
-    started = list(search.pool.map(start, changes(fit, search.balance)))
-    return list(search.pool.map(one, [change for _, change in sorted(started, key=lambda each: each[0])[:STARTS]]))
+    every = search.pool.map(begun, changes(fit, search.balance, free_parameters(fitter.nominal)))
+    return list(search.pool.map(one, sorted(every, key=lambda each: each.chi2)[:STARTS]))
 
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:

@@ -213,7 +213,7 @@ def _screened(
     """The share of the balance's error that starts take which differ in phase alone, and they with their strength."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
     columns = beside(columns, basis)
-    scale, fall = _step(columns, left, _limit(variant.effect, group))
+    scale, fall = _step(columns, left, _limits(variant.effect, group))
     return fall, _scaled(variant.effect, group, scale)
 
 
@@ -293,30 +293,31 @@ def _promise(
     whole = np.stack(columns, axis=1)
     changed = beside(whole, fit.basis)
     own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
-    scale, fall = _step(changed, beside(before, fit.basis), _limit(variant.effect, group))
+    scale, fall = _step(changed, beside(before, fit.basis), _limits(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
     simulated = fall / max(fit.chi2, 1e-300)
     return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), simulated, along, own, settled)
 
 
-def _step(columns: Signal, left: Signal, limit: float) -> tuple[Signal, float]:
+def _step(columns: Signal, left: Signal, limits: tuple[float, float]) -> tuple[Signal, float]:
     """By how much to scale columns for the least squared error beside what is `left`, and the fall of it.
 
-    A single column is scaled up to `limit`: beyond, and on the other side of none, a simulation is not linear.
+    A single column is scaled within `limits`: beyond a simulation is not linear.
     """
     normal, slope = columns.T @ columns, columns.T @ left
     if np.linalg.cond(normal) > SINGULAR:
         return np.zeros(slope.size), 0.0
     scale = -np.linalg.solve(normal, slope)
     if scale.size == 1:
-        scale = np.clip(scale, 0.0, limit)
+        scale = np.clip(scale, *limits)
     return scale, float(-(2.0 * slope + normal @ scale) @ scale)
 
 
-def _limit(effect: str, group: Sequence[Start]) -> float:
-    """The largest factor by which the strength of a start is scaled."""
-    strides = (EFFECT[effect].parameter(name).stride for name in group[0])
-    return max((stride for stride in strides if stride is not None), default=1.0)
+def _limits(effect: str, group: Sequence[Start]) -> tuple[float, float]:
+    """The least and the largest factor by which the strength of a start is scaled; below 0 where it has two signs."""
+    strengths = [each for each in map(EFFECT[effect].parameter, group[0]) if each.stride is not None]
+    most = max((each.stride for each in strengths if each.stride), default=1.0)
+    return (-most if any(each.minimum < 0.0 for each in strengths) else 0.0), most
 
 
 SINGULAR = 1e12
@@ -345,5 +346,5 @@ def _scaled(effect: str, group: Sequence[Start], scale: Signal) -> list[Start]:
     for name in values:
         stride = declared.parameter(name).stride
         if stride is not None:
-            values[name] *= float(np.clip(scale[0], 1.0 / stride, stride))
+            values[name] *= math.copysign(float(np.clip(abs(scale[0]), 1.0 / stride, stride)), scale[0])
     return [values]
