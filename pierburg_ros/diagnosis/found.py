@@ -157,8 +157,10 @@ def shares(choice: Choice) -> Shares:
     """How the mismatch divides between re-estimated parameters, each effect beside the others, and what remains.
 
     What effects take together is divided in proportion to what is lost without each of them. A parameter that changed
-    in mid-recording is a re-estimated one.
+    in mid-recording is a re-estimated one. Nothing is divided where the balance alone names an effect.
     """
+    if any(name.along is not None for name in choice.names.values()):
+        return Shares(None, {}, None)
     start, estimated, left = (excess(fit) for fit in (choice.described, choice.estimated, choice.handed))
     if start <= MISMATCH:
         return Shares(None, {}, None)

@@ -45,12 +45,14 @@ class Name:
     """How sure an effect is, between 0 and 1, by the best explanation `fit` with it and the best `rival` without it.
 
     It is the probability that the fit is better, times the share of the rival's error above the noise that it takes:
-    where something remains that no effect describes, any effect takes a part of it.
+    where something remains that no effect describes, any effect takes a part of it. `along` is that share of the error
+    of the balance, where the balance alone names the effect.
     """
 
     confidence: float
     fit: Fit
     rival: Fit
+    along: float | None = None
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ def chosen(
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able)
     if len(best.explanation.drifted) > 1:
-        alike = list(aliases(next(fit for fit in whole if key(fit) == key(best))))
+        alike = list(aliases(next(fit for fit in fits if key(fit) == key(best))))
         alike += fewest([described, *alike], parameters, pool)
         everything += alike
         able += alike if explained else named_alone(alike, everything)

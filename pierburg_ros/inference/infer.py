@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.budget import USUAL_BUDGET, Budget
+from pierburg_ros.inference.along import named_along
 from pierburg_ros.inference.balance import Balance, balance_of
 from pierburg_ros.inference.choice import Choice, chosen
 from pierburg_ros.inference.data import data_of
@@ -62,4 +63,5 @@ def infer(
         search = Search(balance, independent(fitter, balance, free), forms(data, nominal, span), pool, tell)
         fits = searched(fitter, search)
         choice = chosen(fits, free, pool, lambda fit: aliases(fit, search))
+    choice = named_along(choice, balance, search.candidates)
     return Inferred(choice, balance, search.candidates, free, search.drifts, effort)

@@ -167,7 +167,6 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
 
 def changed(fit: Fit, search: Search) -> list[Fit]:
     """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit."""
-
     fitter = fit.fitter
 
     def begun(change: Change) -> Fit:

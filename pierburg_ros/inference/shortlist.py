@@ -141,6 +141,20 @@ def forms(data: Data, nominal: Model, span: Span) -> list[tuple[Variant, list[di
     return found
 
 
+@dataclass(frozen=True)
+class Reading:
+    """A start of an effect as the balance reads it.
+
+    `starts` differ in phase alone. `values` are all values by dotted name of a fit of the balance beside the effect;
+    `share` is what it takes of the error that the balance leaves without it.
+    """
+
+    variant: Variant
+    starts: list[Start]
+    values: dict[str, float]
+    share: float
+
+
 def promises(
     fit: Fit,
     balance: Balance,
@@ -148,13 +162,22 @@ def promises(
     pool: Executor,
 ) -> list[Promise]:
     """What each of the `candidates` promises on top of a `fit`."""
+    _, readings = read(fit, balance, candidates)
+    found = pool.map(lambda reading: _promise(fit, reading), readings)
+    return [each for each in found if each is not None]
+
+
+def read(
+    fit: Fit, balance: Balance, candidates: Sequence[tuple[Variant, list[dict[str, float]]]]
+) -> tuple[Balance, list[Reading]]:
+    """The balance without events beside a `fit`, and how it reads the best starts of each of the `candidates`."""
     nominal = fit.fitter.nominal
     base = fit.explanation.drifted
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, base, fit.values, acting)
     project, left = projected(inside, nominal, base, values, acting)
     error = float(left @ left)
-    groups: list[tuple[Variant, list[Start], dict[str, float], float]] = []
+    readings: list[Reading] = []
     for variant, starts in candidates:
         if variant.effect in acting:
             continue
@@ -167,9 +190,8 @@ def promises(
             begun, settled, rest = _settled(inside, nominal, base, acting, values, variant, group)
             share = 1.0 - rest / max(error, 1e-300)
             # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
-            groups.append((variant, begun if share > 1.0 / left.size else group, settled, share))
-    found = pool.map(lambda group: _promise(fit, *group), groups)
-    return [each for each in found if each is not None]
+            readings.append(Reading(variant, begun if share > 1.0 / left.size else group, settled, share))
+    return inside, readings
 
 
 def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
@@ -278,11 +300,10 @@ def _settled(
     return [numbers, turned], settled, found.cost
 
 
-def _promise(
-    fit: Fit, variant: Variant, group: Sequence[Start], settled: dict[str, float], along: float
-) -> Promise | None:
+def _promise(fit: Fit, reading: Reading) -> Promise | None:
     """What one linear step along some starts foretells; None where the effect cannot be added to the fit."""
     fitter, before, columns = fit.fitter, fit.fitted, []
+    variant, group = reading.variant, reading.starts
     samples = fitter.data.train
     for start in group:
         try:
@@ -296,7 +317,8 @@ def _promise(
     scale, fall = _step(changed, beside(before, fit.basis), _limits(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
     simulated = fall / max(fit.chi2, 1e-300)
-    return Promise(variant, in_order(added(fit.values, variant, start), fitter.nominal), simulated, along, own, settled)
+    values = in_order(added(fit.values, variant, start), fitter.nominal)
+    return Promise(variant, values, simulated, reading.share, own, reading.values)
 
 
 def _step(columns: Signal, left: Signal, limits: tuple[float, float]) -> tuple[Signal, float]:

@@ -63,6 +63,11 @@ def effect_explanation(
 
 def reason(name: Name) -> str:
     """Why an effect is as sure as it is."""
+    if name.along is not None:
+        return (
+            f"Of the torque that is missing along the measured motion it takes {numbers.percent(name.along)}, in blocks"
+            " that were not fitted; no simulation is near the recording."
+        )
     rival = identifier(name.rival)
     other = "the model as described" if rival == NOMINAL else numbers.words(rival)
     return (
