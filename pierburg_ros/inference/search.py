@@ -160,9 +160,27 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
                 begun.append(fitter.fit(explanation, start, 0))
         begun.sort(key=lambda each: each.chi2)
         several = begun if jumps(explanation) else begun[:1]
-        return min((fitter.fit(explanation, each.values, BRIEF) for each in several), key=lambda each: each.chi2)
+        best = min((fitter.fit(explanation, each.values, BRIEF) for each in several), key=lambda each: each.chi2)
+        return timed(best, promise.variant)
 
     return list(search.pool.map(one, promised))
+
+
+def timed(fit: Fit, variant: Variant) -> Fit:
+    """A short fit with the moments of a dated effect moved to where it gains most, in a single recording."""
+    effect, fitter = EFFECT[variant.effect], fit.fitter
+    moments = [f"{effect.id}.{p.name}" for p in effect.parameters if p.moment and p.name in variant.free]
+    if len(moments) != 2 or len(fitter.data.runs) > 1:
+        return fit
+    for _ in range(MOVES):
+        always = fit.model.with_values(dict.fromkeys(moments, 0.0))
+        never = always.with_values({f"{effect.id}.{name}": 0.0 for name in effect.strength})
+        values = {**fit.values, **dict(zip(moments, fitter.span(never, always), strict=True))}
+        moved = fitter.fit(fit.explanation, values, BRIEF)
+        if moved.chi2 >= fit.chi2:
+            break
+        fit = moved
+    return fit
 
 
 def changed(fit: Fit, search: Search) -> list[Fit]:

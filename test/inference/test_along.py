@@ -46,8 +46,8 @@ def test_a_ripple_is_named_with_its_periods_and_amplitude():
     assert choice.names["cogging_torque"].along > 0.5
     found = choice.handed.values
     assert found["cogging_torque.periods_per_motor_revolution"] == pytest.approx(RIPPLE["periods"], abs=0.1)
-    # behind the filter the ripple at 0.5 to 1.3 rad/s is lower by 0.96 to 0.81, and what is late by 0.3 to 0.6 rad, once
-    # on one side and once on the other, keeps 0.96 to 0.8 of it
+    # behind the filter the ripple at 0.5 to 1.3 rad/s is lower by 0.96 to 0.81, and what is late by 0.3 to 0.6 rad,
+    # once on one side and once on the other, keeps 0.96 to 0.81 of it
     assert 0.6 * RIPPLE["amplitude"] < found["cogging_torque.amplitude"] < RIPPLE["amplitude"]
 
 
