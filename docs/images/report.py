@@ -1,4 +1,4 @@
-"""Takes the README's two pictures of a report: python docs/images/report.py (needs chromium and chromedriver).
+"""Takes the README's picture of a report: python docs/images/report.py (needs chromium and chromedriver).
 
 The report is that of docs/my_bag.md: the bag of examples/throttle_bag.py, diagnosed.
 """
@@ -18,32 +18,23 @@ SIGNALS = {
     "duty": {"topic": "/throttle/pwm", "unit": "percent"},
     "hall_voltage": {"topic": "/throttle/adc", "unit": "counts", "scale": 5.0 / 4096},
 }
-PICTURES = {"report.png": "Missing physics", "report_signals.png": "Before and after"}
-"""File, and the heading at which it begins; the first shows what stands above as well."""
 WIDTH, COLOURS = 1200, 64
 
 
 def take(report: Path, output: Path, folder: Path) -> None:
-    """Write the pictures of a `report` to `output`; the browser's profile is in `folder`."""
+    """Write the picture of the head of a `report` to `output`; the browser's profile is in `folder`."""
     sys.path.insert(0, str(ROOT / "test"))
     from support.browser import browser
 
     with browser(folder, WIDTH) as page:
         page.open(report)
-        for name, heading in PICTURES.items():
-            page.run(
-                "const top = [...document.querySelectorAll('h2')].find(e => e.textContent.trim() == arguments[0]);"
-                "if (arguments[1]) top.scrollIntoView(); else window.scrollTo(0, 0);",
-                heading,
-                heading != "Missing physics",
-            )
-            (body,) = page.elements("body")
-            picture = Image.open(io.BytesIO(page.picture(body))).convert("RGB")
-            picture.quantize(COLOURS).save(output / name, optimize=True)
+        (body,) = page.elements("body")
+        picture = Image.open(io.BytesIO(page.picture(body))).convert("RGB")
+        picture.quantize(COLOURS).save(output / "report.png", optimize=True)
 
 
 def main() -> None:
-    """Write the bag, diagnose it, take the pictures."""
+    """Write the bag, diagnose it, take the picture."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         runpy.run_path(str(ROOT / "examples" / "throttle_bag.py"))["write"](folder / "throttle")
