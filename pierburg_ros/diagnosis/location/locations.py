@@ -122,10 +122,15 @@ def _pulled_before(motion: Motion, first: int) -> bool:
 
 
 def _way(motion: Motion, sample: int) -> str:
-    return "opening" if motion.velocity[sample] > 0.0 else "closing"
+    """The direction at a sample; forwards is where the angle grows of what has no stop to open or close."""
+    ways = ("opening", "closing") if motion.actuator.has_stops else ("forwards", "backwards")
+    return ways[0] if motion.velocity[sample] > 0.0 else ways[1]
 
 
 def _near(motion: Motion, inside: NDArray[np.intp]) -> str:
+    if motion.actuator.quantity == "speed":
+        lowest, highest = (float(f(motion.velocity[inside])) for f in (np.min, np.max))
+        return f"at {lowest:.3g} to {highest:.3g} {motion.actuator.unit}"
     lowest, highest = (float(f(motion.angle[inside])) for f in (np.min, np.max))
     if highest - lowest < PLACE * motion.scales.angle:
         middle = (lowest + highest) / 2

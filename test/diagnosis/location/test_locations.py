@@ -1,9 +1,12 @@
 """Windows in words, on a course that is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.motions import CORNERS, drawn
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.location.locations import doing, locations
 
 
@@ -26,6 +29,16 @@ def pressing(time):
 )
 def test_says_what_the_shaft_does(start, end, words):
     assert doing(drawn(duty=pressing), start, end) == words
+
+
+def test_what_has_no_stop_neither_opens_nor_closes():
+    motion = replace(drawn(duty=pressing), actuator=read_actuator("xl330"))
+    assert doing(motion, 2.4, 2.6) == "fast forwards between 23 and 34 degrees"
+
+
+def test_a_sensor_of_speed_tells_no_angle():
+    motion = replace(drawn(duty=pressing), actuator=replace(read_actuator("xl330"), quantity="speed"))
+    assert doing(motion, 2.4, 2.6) == "fast forwards at 0.958 to 1.04 rad/s"
 
 
 def test_negative_duty_before_leaving_the_stop_is_said():
