@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from pierburg_ros.actuators import Actuator
@@ -65,15 +66,24 @@ class Balance:
         return np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in self.motions])
 
     def without_outliers(self, residual: Signal) -> Balance:
-        """The same without the samples in which a `residual` leaves that around it for an event.
+        """The same without the samples in which a `residual` is outlying."""
+        return self._only(np.abs(residual))
 
-        What lasts longer, as a load for some seconds, is no event.
-        """
-        ends = np.cumsum([motion.samples.size for motion in self.motions])[:-1]
-        parts = [part - median_filter(part, EVENT) for part in np.split(residual, ends)]
-        largest = OUTLYING * np.median(np.abs(np.concatenate(parts)))
-        kept = (motion.only(np.abs(part) <= largest) for motion, part in zip(self.motions, parts, strict=True))
+    def without_events(self, residual: Signal) -> Balance:
+        """The same without those in which it leaves that around it: what lasts, as a load for some seconds, stays."""
+        parts = np.split(residual, self._ends)
+        return self._only(np.abs(np.concatenate([part - median_filter(part, EVENT) for part in parts])))
+
+    def _only(self, size: Signal) -> Balance:
+        """The samples in which a `size`, shape (samples,), is not outlying."""
+        inside = np.split(size <= OUTLYING * np.median(size), self._ends)
+        kept = (motion.only(part) for motion, part in zip(self.motions, inside, strict=True))
         return Balance(self.actuator, tuple(kept))
+
+    @property
+    def _ends(self) -> NDArray[np.int64]:
+        """Where the motions but the last end in arrays over all samples."""
+        return np.cumsum([motion.samples.size for motion in self.motions])[:-1]
 
 
 def balance_of(data: Data, model: Model, constant: float) -> Balance:

@@ -85,23 +85,13 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
                 break
             found.update(map(key, new))
             search.tell(f"{label(new[0])}, to the end")
-            led = list(search.pool.map(lambda fit: fitted_on(fit, search), new[:BEAM]))
+            led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
             before, leading = leading[0], nearest(led)
             ended = best_of_support([*ended, *followed(leading, search.pool)])
             ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
             if excess(leading[0]) > WORTH_ADDING * excess(before):
                 break
     return ended
-
-
-def fitted_on(fit: Fit, search: Search) -> Fit:
-    """A leading fit to its end; where events jump also from the drifts that the balance says beside what was found."""
-    fitter, own = fit.fitter, fit.explanation
-    ended = fitter.fit(own, fit.values)
-    if adequate(ended) or not jumps(own):
-        return ended
-    values, _ = balanced(search.balance, fitter.nominal, own.drifted, ended.values, own.effects)
-    return min((ended, fitter.fit(own, in_order(values, fitter.nominal))), key=lambda each: each.chi2)
 
 
 def nearest(fits: Sequence[Fit]) -> list[Fit]:

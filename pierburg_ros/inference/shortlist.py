@@ -175,20 +175,22 @@ def read(
     base = fit.explanation.drifted
     acting = fit.explanation.effects
     values, inside = balanced(balance, nominal, base, fit.values, acting)
-    project, left = projected(inside, nominal, base, values, acting)
-    error = float(left @ left)
+    # a load that lasts is outlying, where it acts
+    lasting = balance.without_events(balance.residual(values, acting))
+    sides = [(side, *projected(side, nominal, base, values, acting)) for side in (inside, lasting)]
     readings: list[Reading] = []
     for variant, starts in candidates:
         if variant.effect in acting:
             continue
         several, declared = _in_quadrature(variant.effect, starts), EFFECT[variant.effect]
+        side, project, left = sides[declared.dated]
         if declared.along is not None and declared.mark is None:
-            screened = [_screened(inside, values, variant, group, project, left) for group in several]
+            screened = [_screened(side, values, variant, group, project, left) for group in several]
             several = [group for _, group in sorted(screened, key=lambda each: -each[0])[:SCREENED]]
-            several = [_dated(inside, values, variant, group, project, left) for group in several]
+            several = [_dated(side, values, variant, group, project, left) for group in several]
         for group in several:
-            begun, settled, rest = _settled(inside, nominal, base, acting, values, variant, group)
-            share = 1.0 - rest / max(error, 1e-300)
+            begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
+            share = 1.0 - rest / max(float(left @ left), 1e-300)
             # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
             readings.append(Reading(variant, begun if share > 1.0 / left.size else group, settled, share))
     return inside, readings
