@@ -64,7 +64,7 @@ def lacking(fit: Fit, balance: Balance) -> Lacking:
     nominal, actuator, acting = fit.fitter.nominal, fit.fitter.data.actuator, fit.explanation.effects
     # what shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them
     along = [each for each in fit.explanation.variants if EFFECT[each.effect].along and not EFFECT[each.effect].mark]
-    names = (*fit.explanation.drifted, *(f"{each.effect}.{name}" for each in along for name in each.free))
+    names = (*fit.explanation.drifted, *(name for each in along for name in each.names))
     values, inside = balanced(balance, nominal, names, fit.values, acting)
     basis, _ = projected(inside, nominal, names, values, acting)
     scale = np.concatenate([motion.driven(values, np.ones(motion.samples.size)) for motion in inside.motions])

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pierburg_ros.arrays import Signal
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.choice import NAMED, Choice, Name, predictor
@@ -23,8 +23,7 @@ from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.evidence import TIED, certainty, probability, repetition
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import strongest
-from pierburg_ros.inference.least_squares import minimise
-from pierburg_ros.inference.shortlist import SETTLING, Reading, read
+from pierburg_ros.inference.shortlist import SETTLING, Reading, fitted, read
 from pierburg_ros.plant import Model
 
 FOLDS = 2
@@ -53,20 +52,11 @@ class Judged:
         return Judged(balance, nominal, blocks, np.where(np.concatenate(judges), -1, order % FOLDS))
 
     def fitted(
-        self, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str], which: NDArray[np.bool_]
+        self, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str], which: Flags
     ) -> tuple[dict[str, float], Signal]:
         """Values of `names` beside `effects` by some of the samples, and what they leave of all, shape (samples,)."""
-        coordinates = Coordinates(tuple(names), self.nominal, self.balance.duration)
         start = in_order(values, self.nominal)
-
-        def residual(point: Signal) -> Signal:
-            return self.balance.residual(in_order({**start, **coordinates.values(point)}, self.nominal), effects)
-
-        def some(point: Signal) -> Signal:
-            return residual(point)[which]
-
-        found = minimise(some, coordinates.point(start), *coordinates.bounds, coordinates.steps, SETTLING)
-        return in_order({**start, **coordinates.values(found.point)}, self.nominal), residual(found.point)
+        return fitted(self.balance, self.nominal, names, start, effects, SETTLING, which)
 
     def predicted(self, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str]) -> Signal:
         """What is left of each sample by a fit to the other folds, shape (samples that do not judge last,)."""
@@ -116,7 +106,7 @@ def named_along(
         if declared.along and not declared.mark and not bounded(reading, fitter.nominal, inside):
             best.setdefault(declared.id, reading)
     left = {"": judged.predicted(drifts, base.values, ())}
-    left |= {name: judged.predicted([*drifts, *own(each)], each.values, [name]) for name, each in best.items()}
+    left |= {name: judged.predicted([*drifts, *each.variant.names], each.values, [name]) for name, each in best.items()}
     undated = sorted((name for name in left if not name or not EFFECT[name].dated), key=lambda name: square(left[name]))
     named = undated[0]
     if not named:
@@ -129,9 +119,9 @@ def named_along(
     effective = left[named].size / repetition(left[named])
     alike = [name for name in best if effective * math.log(square(left[name]) / square(left[named])) <= TIED]
     reading = best[named]
-    kept = judged.drifted(drifts, own(reading), reading.values, named)
+    kept = judged.drifted(drifts, reading.variant.names, reading.values, named)
     start = {**reading.values, **{name: fitter.nominal.values[name] for name in drifts if name not in kept}}
-    values, _ = judged.fitted([*kept, *own(reading)], start, [named], judged.fold >= 0)
+    values, _ = judged.fitted([*kept, *reading.variant.names], start, [named], judged.fold >= 0)
     explanation = Explanation(tuple(kept), (reading.variant,))
     found, handed = (each.fit(explanation, values, 0) for each in (strongest(fitter), fitter))
     fits = (handed, *choice.fits)
@@ -147,14 +137,10 @@ def named_along(
     )
 
 
-def own(reading: Reading) -> list[str]:
-    """The dotted names of an effect's free numbers."""
-    return [f"{reading.variant.effect}.{name}" for name in reading.variant.free]
-
-
 def bounded(reading: Reading, nominal: Model, balance: Balance) -> bool:
     """Whether a number of an effect, other than 0, ends on a bound of the search."""
-    coordinates = Coordinates(tuple(own(reading)), nominal, balance.duration)
+    names = reading.variant.names
+    coordinates = Coordinates(names, nominal, balance.duration)
     point, (lower, upper) = coordinates.point(reading.values), coordinates.bounds
-    given = np.array([reading.values[name] != 0.0 for name in own(reading)])
+    given = np.array([reading.values[name] != 0.0 for name in names])
     return bool(np.any(given & ((point <= lower) | (point >= upper))))

@@ -15,6 +15,11 @@ class Variant:
     free: tuple[str, ...]
     fixed: tuple[tuple[str, float], ...] = ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The dotted names of its free parameters."""
+        return tuple(f"{self.effect}.{name}" for name in self.free)
+
 
 AFTER = "@after"
 """Marks the value of a parameter after its change in the middle of a recording."""
@@ -43,7 +48,7 @@ class Explanation:
     @property
     def names(self) -> tuple[str, ...]:
         """Dotted names of all free quantities."""
-        own = tuple(f"{v.effect}.{name}" for v in self.variants for name in v.free)
+        own = tuple(name for variant in self.variants for name in variant.names)
         if self.changed is None:
             return self.drifted + own
         return (*self.drifted, *own, self.changed, self.changed + AFTER, self.changed + WHEN)

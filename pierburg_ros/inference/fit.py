@@ -192,21 +192,22 @@ class Fitter:
 
     def moment(self, model: Model, after: Model) -> float:
         """When [s] `after` had best take over from `model` in the only run: a fit moves a moment by samples."""
-        before, later = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (model, after))
-        counted = self.data.train
-        cost = np.cumsum(np.where(counted, before - later, 0.0))
-        return float(self.data.runs[0].time[int(np.argmin(cost))])
+        return float(self.data.runs[0].time[int(np.argmin(self._gained(model, after)))])
 
     def span(self, absent: Model, present: Model) -> tuple[float, float]:
         """From when to when [s] `present` had best act in place of `absent` in the only run; 0: its beginning or end.
 
         The stretch over which the sum of what it gains is largest.
         """
-        without, acting = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (absent, present))
-        gained = np.concatenate([[0.0], np.cumsum(np.where(self.data.train, without - acting, 0.0))])
+        gained = np.concatenate([[0.0], self._gained(absent, present)])
         end = int(np.argmax(gained - np.minimum.accumulate(gained)))
         start, time = int(np.argmin(gained[: end + 1])), self.data.runs[0].time
         return (float(time[start]) if start else 0.0), (float(time[end]) if end < time.size else 0.0)
+
+    def _gained(self, model: Model, other: Model) -> Signal:
+        """By how much an `other` model leaves less of the fitted samples up to each, shape (samples,)."""
+        before, later = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (model, other))
+        return np.cumsum(np.where(self.data.train, before - later, 0.0))
 
     def coordinates(self, explanation: Explanation) -> Coordinates:
         """The coordinates in which the quantities of an explanation are searched."""

@@ -33,7 +33,8 @@ STARTS = 2
 LOOKED_AT = 2
 """Iterations after which the changes of each parameter are compared. Work: where they start says too little."""
 MOVES = 2
-"""Times that the moment of a change is read off a fit, and the fit made again. Work: the second moves it by samples."""
+"""Times that the moments of a change, or of a load, are read off a fit, and the fit made again. Work: the second moves
+them by samples."""
 ALIAS = 0.05
 """Share of what an effect changes that drifts cannot make, below which it may stand for drifts. Chosen: a sag of the
 supply is absorbed to 78 to 99 % by the resistance; not varied."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pierburg_ros.arrays import Signal
+from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.effects import EFFECT, EFFECTS
 from pierburg_ros.effects.effect import Start
 from pierburg_ros.errors import InputError
@@ -28,7 +28,7 @@ from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fit, Fitter
 from pierburg_ros.inference.intervals import slopes_at
-from pierburg_ros.inference.least_squares import beside, jacobian, minimise
+from pierburg_ros.inference.least_squares import FULL, beside, jacobian, minimise
 from pierburg_ros.plant import Model
 
 SCREENED = 4
@@ -79,17 +79,39 @@ def balanced(
     balance: Balance, nominal: Model, names: Sequence[str], values: Mapping[str, float], effects: Sequence[str] = ()
 ) -> tuple[dict[str, float], Balance]:
     """Values of the base parameters `names` by the balance beside `effects`, and the balance without outliers."""
-    coordinates, found = Coordinates(tuple(names), nominal, balance.duration), {**nominal.values, **values}
+    found = {**nominal.values, **values}
     for _ in range(ROUNDS):
-        start = found
-
-        def residual(point: Signal, at: Mapping[str, float] = start, inside: Balance = balance) -> Signal:
-            return inside.residual(in_order({**at, **coordinates.values(point)}, nominal), effects)
-
-        solution = minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps)
-        found = in_order({**start, **coordinates.values(solution.point)}, nominal)
-        balance = balance.without_outliers(balance.residual(found, effects))
+        found, left = fitted(balance, nominal, names, found, effects)
+        balance = balance.without_outliers(left)
     return found, balance
+
+
+def fitted(
+    balance: Balance,
+    nominal: Model,
+    names: Sequence[str],
+    start: Mapping[str, float],
+    effects: Sequence[str],
+    iterations: int = FULL,
+    which: Flags | None = None,
+) -> tuple[dict[str, float], Signal]:
+    """Values of `names` by the balance beside `effects` from a `start` on, and what they leave, shape (samples,).
+
+    By some of the samples where flags say `which`.
+    """
+    coordinates = Coordinates(tuple(names), nominal, balance.duration)
+
+    def values(point: Signal) -> dict[str, float]:
+        return in_order({**start, **coordinates.values(point)}, nominal)
+
+    def residual(point: Signal) -> Signal:
+        left = balance.residual(values(point), effects)
+        return left if which is None else left[which]
+
+    found = values(
+        minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps, iterations).point
+    )
+    return found, balance.residual(found, effects)
 
 
 def independent(fitter: Fitter, balance: Balance, names: Sequence[str]) -> tuple[str, ...]:
@@ -280,26 +302,21 @@ def _settled(
     What shows at rests, reversals or stops keeps its numbers: a balance of motion tells little of them.
     """
     effect = EFFECT[variant.effect]
-    own = () if effect.mark else tuple(f"{variant.effect}.{name}" for name in variant.free)
+    own = () if effect.mark else variant.names
     start = in_order(added(values, variant, group[0]), nominal)
     if not own and effect.along is None:
         return list(group), start, math.inf
-    coordinates = Coordinates((*names, *own), nominal, balance.duration)
-
-    def residual(point: Signal) -> Signal:
-        return balance.residual(in_order({**start, **coordinates.values(point)}, nominal), (*acting, variant.effect))
-
-    found = minimise(residual, coordinates.point(start), *coordinates.bounds, coordinates.steps, SETTLING)
-    settled = in_order({**start, **coordinates.values(found.point)}, nominal)
+    settled, left = fitted(balance, nominal, (*names, *own), start, (*acting, variant.effect), SETTLING)
+    rest = float(left @ left)
     if not own:
-        return list(group), settled, found.cost
+        return list(group), settled, rest
     numbers = {
         p.name: settled[f"{effect.id}.{p.name}"] - (settled[p.above] if p.above else 0.0) for p in effect.parameters
     }
     if len(group) < 2 or effect.ripple is None:
-        return [numbers], settled, found.cost
+        return [numbers], settled, rest
     turned = {**numbers, effect.ripple.phase: numbers[effect.ripple.phase] + math.pi / 2}
-    return [numbers, turned], settled, found.cost
+    return [numbers, turned], settled, rest
 
 
 def _promise(fit: Fit, reading: Reading) -> Promise | None:
@@ -339,9 +356,9 @@ def _step(columns: Signal, left: Signal, limits: tuple[float, float]) -> tuple[S
 
 def _limits(effect: str, group: Sequence[Start]) -> tuple[float, float]:
     """The least and the largest factor by which the strength of a start is scaled; below 0 where it has two signs."""
-    strengths = [each for each in map(EFFECT[effect].parameter, group[0]) if each.stride is not None]
-    most = max((each.stride for each in strengths if each.stride), default=1.0)
-    return (-most if any(each.minimum < 0.0 for each in strengths) else 0.0), most
+    strengths = [(each.stride, each.minimum) for each in map(EFFECT[effect].parameter, group[0]) if each.stride]
+    most = max((stride for stride, _ in strengths), default=1.0)
+    return (-most if any(minimum < 0.0 for _, minimum in strengths) else 0.0), most
 
 
 SINGULAR = 1e12
