@@ -32,9 +32,16 @@ GAP = 3.0
 FIRST = 8
 """Samples that tell where a shaft starts and how fast it moves. Chosen: more would bend, fewer say nothing; a pulled
 simulation forgets their error."""
+FORGOTTEN = 8.0
+"""The actuator's own times after which a simulation counts that does not begin at rest on a stop: nothing else tells
+its velocity, and how its gear is wound up. Derived: with both poles of its error there a pulled simulation keeps
+(1 + 8) exp(-8) of it, 0.3 %."""
 RESTING = 5.0
 """Noises within which the first samples are those of a shaft at rest. Derived: eight samples of white noise span more
 in 1 of 500 recordings."""
+BENT = 12.6
+"""Squared noises that a line leaves of the first samples, above which a shaft accelerates. Derived: the 95 % quantile
+of chi squared with the six degrees of freedom of a line through eight samples."""
 STOP = 3.0
 """Noises within which a shaft starts on a stop. Derived: white noise stays within with 99.7 %."""
 FEWEST_SAMPLES = 200
@@ -45,8 +52,10 @@ FEWEST_SAMPLES = 200
 class Run:
     """One recording, ready to be simulated, `measured` in the unit of the actuator's sensor.
 
-    `shown` is where it begins, as `plant.decode.begun` reads it. `block` is the number of the block of each sample and
-    `counts` whether it counts, both shape (samples,): not where the input is unknown. `number` counts recordings.
+    `shown` is where it begins, as `plant.decode.begun` reads it; from `settled` [s] on a pulled simulation has
+    forgotten what of that is not known. `block` is the number of the block of each sample and `counts` whether it
+    counts, both shape (samples,): not where the input is unknown, nor before it has settled. `number` counts
+    recordings.
     """
 
     name: str
@@ -55,6 +64,7 @@ class Run:
     time: Signal
     measured: Signal
     shown: Signal
+    settled: float
     block: NDArray[np.int64]
     counts: Flags
     quantity: str
@@ -188,13 +198,19 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     inputs = inputs_of(recording)
     away = nominal.actuator.lower_stop + STOP * noise_of(recording.time, measured) * abs(angle_per_unit(nominal))
     first = (measured[0] - float(encoded(nominal, 0.0))) * angle_per_unit(nominal)
-    if actuator.quantity != "hall_voltage" or first > away:
+    on_stop = actuator.quantity == "hall_voltage" and first <= away
+    if not on_stop and actuator.load != "none":
         # away from its stop only a command holds a shaft: the first one was in force before
         inputs = inputs.held_before()
+    rests = on_stop and shown[1] == 0.0
     counts = np.ones(recording.time.size, dtype=bool)
     for start, end in recording.unknown_input:
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    return Run(recording.name, number, inputs, recording.time, measured, shown, block, counts, actuator.quantity)
+    settled = recording.time[0] + (0.0 if rests else FORGOTTEN * actuator.scales.time)
+    counts &= recording.time >= settled
+    return Run(
+        recording.name, number, inputs, recording.time, measured, shown, settled, block, counts, actuator.quantity
+    )
 
 
 def inputs_of(recording: Recording) -> Inputs:
@@ -218,8 +234,11 @@ def start_of(time: Signal, measured: Signal) -> Signal:
     noise, first = noise_of(time, measured), measured[:FIRST]
     if np.ptp(first) <= RESTING * noise:
         return np.array([np.mean(first), 0.0, 0.0, STOP * noise, 0.0])
-    rate, level = np.polyfit(time[:FIRST] - time[0], first, 1)
-    return np.array([level, rate, 0.0, STOP * noise, 0.0])
+    since = time[:FIRST] - time[0]
+    line = np.polyfit(since, first, 1)
+    missed = np.sum(np.square(first - np.polyval(line, since)))
+    bend, rate, level = np.polyfit(since, first, 2) if missed > BENT * noise**2 else (0.0, *line)
+    return np.array([level, rate, 2.0 * bend, STOP * noise, 0.0])
 
 
 def refuse_others(recording: Recording, actuator: Actuator) -> None:

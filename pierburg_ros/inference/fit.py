@@ -168,9 +168,13 @@ class Fitter:
 
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
-        """The pull on each run."""
+        """The pull on each run: the strongest of the ladder until it has settled."""
         inertial = inertia_time(self.nominal) > self.data.period and self.data.actuator.quantity != "speed"
-        return tuple(Pull.every(run.time, self.constant, inertial) for run in self.data.runs)
+        strongest = ladder(self.data)[0]
+        return tuple(
+            Pull.every(run.time, np.where(run.time < run.settled, strongest, self.constant), inertial)
+            for run in self.data.runs
+        )
 
     @cached_property
     def unlike(self) -> float:

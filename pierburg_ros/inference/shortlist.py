@@ -256,11 +256,13 @@ def _screened(
     basis: Signal,
     left: Signal,
 ) -> tuple[float, list[Start]]:
-    """The share of the balance's error that starts take which differ in phase alone, and they with their strength."""
+    """What starts take of the balance's squared error that differ in phase alone, and they with their strength."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
     columns = beside(columns, basis)
     scale, fall = _step(columns, left, _limits(variant.effect, group))
-    return fall, _scaled(variant.effect, group, scale)
+    # what takes no more than chance gives tells nothing of its strength
+    told = fall * left.size > float(left @ left)
+    return fall, _scaled(variant.effect, group, scale) if told else list(group)
 
 
 def _dated(

@@ -40,25 +40,22 @@ class Pull:
     rate: Signal
 
     @staticmethod
-    def every(time: Signal, constant: float, inertial: bool) -> Pull:
-        """Pulls with a time `constant` [s], infinite for none, on samples at each `time` [s].
+    def every(time: Signal, constant: float | Signal, inertial: bool) -> Pull:
+        """Pulls with a time `constant` [s], infinite for none, on samples at each `time` [s], both shape (samples,).
 
         Of an `inertial` shaft the velocity is pulled too, with both poles of the error at the time constant.
         """
-        if math.isinf(constant):
-            none = np.empty(0, dtype=np.int64)
-            return Pull(none, none, np.empty(0), np.empty(0))
-        number = np.floor((time - time[0]) / (constant / PULLS))
-        last = np.flatnonzero(np.diff(number) > 0.0).astype(np.int64) + 1
-        first = np.concatenate([[0], last[:-1]])
-        passed = time[last] - time[first]
+        # time in time constants
+        passed = np.concatenate([[0.0], np.cumsum(np.diff(time) / np.broadcast_to(constant, time.shape)[1:])])
+        last = np.flatnonzero(np.diff(np.floor(PULLS * passed)) > 0.0).astype(np.int64) + 1
+        first = np.concatenate([[0], last])[:-1]
         seen = np.maximum(first + 1, last - (last - first) // 2).astype(np.int64)
         # after a gap what was before it tells nothing
         apart = np.diff(time)[last - 1] > 2.0 * np.median(np.diff(time))
         seen[apart] = last[apart]
-        kept = np.exp(-passed / constant)
+        kept = np.exp(passed[first] - passed[last])
         if inertial:
-            return Pull(last, seen, 1.0 - kept**2, (1.0 - kept) ** 2 / passed)
+            return Pull(last, seen, 1.0 - kept**2, (1.0 - kept) ** 2 / (time[last] - time[first]))
         return Pull(last, seen, 1.0 - kept, np.zeros(last.size))
 
     def within(self, first: int, end: int) -> tuple[NDArray[np.int64], NDArray[np.int64], Signal, Signal]:

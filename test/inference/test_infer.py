@@ -4,11 +4,16 @@ import numpy as np
 import pytest
 from support.recordings import NOMINAL, recording, recording_in_closed_loop
 
+from pierburg_ros.actuators import read_actuator
 from pierburg_ros.inference.choice import Choice
 from pierburg_ros.inference.fit import rms_of
 from pierburg_ros.inference.infer import infer
+from pierburg_ros.plant import Inputs, Model, simulate
+from pierburg_ros.recording import Channel, Recording
 
 pytestmark = pytest.mark.search
+
+PENDULUM = Model.nominal(read_actuator("ak80"))
 
 
 def named(choice: Choice) -> set[str]:
@@ -44,6 +49,22 @@ def test_an_effect_beside_a_drift_in_closed_loop_is_named(hidden):
     assert named(choice) == {next(iter(hidden)).split(".")[0]}
     assert {name: choice.chosen.values[name] for name in hidden} == pytest.approx(hidden, rel=0.15)
     assert choice.chosen.values["spring_preload"] == pytest.approx(0.31, rel=0.02)
+
+
+@pytest.mark.parametrize("begin", [0.0, 3.3, 5.7])
+@pytest.mark.parametrize("hidden", [{}, {"drag.quadratic": 0.02}], ids=["nothing", "drag"])
+def test_where_a_recording_was_cut_shows_nothing(begin, hidden):
+    time = np.arange(0.0, 24.0, 0.004)
+    torque = 2.0 * np.sin(2.6 * time) + 1.2 * np.sin(7.3 * time + 1.0)
+    angle = simulate(PENDULUM.with_values(hidden), Inputs(time, torque), time)
+    angle += 0.001 * np.random.default_rng(0).standard_normal(time.size)
+    kept = time >= begin
+    driven = Channel(time[kept] - begin, torque[kept])
+    cut = Recording("cut", "position", time[kept] - begin, angle[kept], driven, input="torque")
+    choice = infer([cut], PENDULUM).choice
+    assert choice.explained
+    assert named(choice) == {name.split(".")[0] for name in hidden}
+    assert choice.chosen.explanation.drifted == ()
 
 
 def test_two_effects_are_named():
