@@ -118,6 +118,9 @@ class Motion(Protocol):
     def direction(self) -> Signal:
         """The sign of the velocity."""
 
+    def held(self, values: Mapping[str, float]) -> Signal:
+        """The torque [N.m] that friction bears where the shaft rests, positive closes."""
+
     def commanded(self, delay: float) -> Signal:
         """The command as it was a `delay` [s] before."""
 
@@ -288,6 +291,11 @@ class Effect:
     where that does not follow from the motion."""
     mark: Mark | None = None
     """Where it shows beside that, or instead."""
+    at_rests: Callable[[Sequence[Motion], Mapping[str, float]], tuple[Start, float]] | None = None
+    """Some of its numbers, as starts have them, read off rests of the shaft by all values of a model, and their share.
+
+    It is that of the squared torque which friction bears there beyond what it can without the effect.
+    """
     elsewhere: Elsewhere = Elsewhere()
     """How other simulators write it; by default they cannot."""
     variants: tuple[Variant, ...] = ()

@@ -1,12 +1,12 @@
 """Static friction above the sliding friction, with a Stribeck curve between them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Variant, grid
+from pierburg_ros.effects.effect import ARMSTRONG, Effect, Elsewhere, Motion, Parameter, Start, Variant, grid
 from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.kernel import kernel
 
@@ -16,6 +16,19 @@ def along(motion: Motion, values: Mapping[str, float]) -> Signal:
     excess = values["static_friction.breakaway_torque"] - values["coulomb_friction"]
     share = motion.velocity / max(values["static_friction.stribeck_velocity"], 1e-300)
     return motion.direction * excess * np.exp(-np.square(share))
+
+
+BORNE = 0.9
+"""Share of the rests that bear less than what breaks the shaft loose. Chosen: a tenth may be an error of the load; most
+rests end before they bear all."""
+
+
+def at_rests(rests: Sequence[Motion], values: Mapping[str, float]) -> tuple[Start, float]:
+    """A rest bears up to the breakaway torque, and bears most of it just before the shaft moves."""
+    beyond = [float(np.max(np.abs(rest.held(values)))) - values["coulomb_friction"] for rest in rests] or [0.0]
+    excess = float(np.quantile(beyond, BORNE))
+    before, after = (float(np.sum(np.square(np.maximum(each, 0.0)))) for each in (beyond, np.subtract(beyond, excess)))
+    return {"breakaway_torque": excess}, 1.0 - after / max(before, 1e-300)
 
 
 EFFECT = Effect(
@@ -60,6 +73,7 @@ EFFECT = Effect(
     # what exceeds the sliding friction, here 40 % of the Pierburg actuator's
     along=along,
     mark="rests",
+    at_rests=at_rests,
     typical={"breakaway_torque": 0.02999422, "stribeck_velocity": 0.006078519},
     variants=(
         Variant(

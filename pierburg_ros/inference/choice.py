@@ -112,9 +112,10 @@ def chosen(
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
     everything = [described, *fits]
+    apart = next(fit for fit in fits if bare(fit)).explanation.drifted
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
-        parameters = next(fit for fit in fits if bare(fit)).explanation.drifted
+        parameters = apart
 
     def able(several: Sequence[Fit]) -> list[Fit]:
         """Those of several fits that may be chosen: all that explain, else the nearest that is sure of its names."""
@@ -122,13 +123,13 @@ def chosen(
 
     whole = able(fits)
     own = [described, *whole, *fewest([described, *whole], parameters, pool)]
-    best = Score.of(own).best(own)
+    best = Score.of(own).best(own, apart)
     if len(best.explanation.drifted) > 1:
         alike = aliases(next(fit for fit in fits if key(fit) == key(best)))
         everything += alike
         alike = able(alike)
         own += [*alike, *fewest([described, *alike], parameters, pool)]
-        best = Score.of(own).best(own)
+        best = Score.of(own).best(own, apart)
     best, dropped = needed(best, pool)
     everything += [*own, *dropped, *in_place(best, whole, parameters, pool)]
     score = Score.of([best, *everything])
@@ -181,11 +182,14 @@ class Score:
         """What is least for the explanation that is chosen."""
         return self.lack(fit.chi2) + self.price * fit.size
 
-    def best(self, fits: Sequence[Fit]) -> Fit:
-        """The fit that is chosen; of those as good that change no more quantities, one with the fewest effects."""
+    def best(self, fits: Sequence[Fit], apart: Sequence[str]) -> Fit:
+        """The fit that is chosen; of those as good that change no more quantities, one with the fewest effects.
+
+        Of these one whose drifts are among those that the recordings tell `apart`: others equal one of them.
+        """
         first = min(fits, key=self)
         equal = [fit for fit in fits if self.alike(fit, first) and fit.size <= first.size]
-        return min(equal, key=lambda fit: (len(key(fit)), self(fit)))
+        return min(equal, key=lambda fit: (len(key(fit)), len({*fit.explanation.drifted} - {*apart}), self(fit)))
 
     def alike(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit makes the recordings as likely as the best, but for what is a tie."""

@@ -41,7 +41,10 @@ the least plausible stiffness gives under the nominal preload."""
 
 @dataclass(frozen=True, eq=False)
 class Filtered:
-    """Evenly sampled signals behind one filter of `window` samples, a `step` [s] apart, each shape (samples,)."""
+    """Evenly sampled signals behind one filter of `window` samples, a `step` [s] apart, each shape (samples,).
+
+    `noise` [rad, or rad/s] is that of the raw angle, or speed.
+    """
 
     actuator: Actuator
     step: float
@@ -51,6 +54,7 @@ class Filtered:
     raw_command: Signal
     supply: Signal | None
     closed: Signal
+    noise: float
     angle: Signal = field(init=False)
     velocity: Signal = field(init=False)
     acceleration: Signal = field(init=False)
@@ -69,6 +73,24 @@ class Filtered:
     def smooth(self, values: Signal, derivative: int = 0) -> Signal:
         """`values` or a derivative of them behind the filter."""
         return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative) / self.step**derivative)
+
+    @cached_property
+    def moving(self) -> Flags:
+        """Where the shaft surely moves, shape (samples,)."""
+        spread = self.noise / math.sqrt(self.window)
+        if self.actuator.quantity != "speed":
+            spread = self.noise * math.sqrt(12.0 / self.window**3) / self.step
+        return np.asarray(np.abs(self.velocity) > SURELY_MOVING * spread)
+
+    def all_of_filter(self, which: Flags) -> Flags:
+        """Where some samples fill all of the filter, shape (samples,)."""
+        return np.asarray(np.convolve(which, np.ones(self.window), "same") > self.window - 0.5)
+
+    @cached_property
+    def apart(self) -> Flags:
+        """Where the shaft is away from its stops."""
+        near, actuator = NEAR_STOP * self.actuator.scales.angle, self.actuator
+        return (self.angle > actuator.lower_stop + near) & (self.angle < actuator.upper_stop - near)
 
     @cached_property
     def ripples(self) -> dict[float, tuple[Signal, Signal]]:
@@ -127,6 +149,17 @@ class Motion:
     def everywhere(self) -> Motion:
         """The same at every sample, at rest too."""
         return Motion(self.whole, np.arange(self.whole.time.size))
+
+    @cached_property
+    def rests(self) -> tuple[Motion, ...]:
+        """Where the shaft rests away from its stops, one after the other."""
+        still = np.flatnonzero(self.whole.all_of_filter(~self.whole.moving) & self.whole.apart)
+        parts = np.split(still, np.flatnonzero(np.diff(still) > 1) + 1)
+        return tuple(Motion(self.whole, part) for part in parts if part.size)
+
+    def held(self, values: Mapping[str, float]) -> Signal:
+        """The torque [N.m] that friction bears where the shaft rests, positive closes."""
+        return self.driven(values, self.command) - self.bearing(values)
 
     def only(self, which: Flags) -> Motion:
         """Those of the samples that are flagged, shape (samples,)."""
@@ -189,11 +222,14 @@ class Motion:
 
     def load(self, values: Mapping[str, float]) -> Signal:
         """The torque [N.m] that load, inertia and Coulomb friction need, positive closes."""
+        rubbing = values["coulomb_friction"] * self.direction
+        return self.bearing(values) + rubbing + values.get("total_inertia", 0.0) * self.acceleration
+
+    def bearing(self, values: Mapping[str, float]) -> Signal:
+        """The torque [N.m] of spring and weight, positive closes."""
         held = values.get("spring_preload", 0.0) + values.get("spring_stiffness", 0.0) * self.angle
         weight = values.get("gravity_torque", 0.0)
-        hanging = weight * np.sin(self.angle) if weight else 0.0
-        rubbing = values["coulomb_friction"] * self.direction
-        return held + hanging + rubbing + values.get("total_inertia", 0.0) * self.acceleration
+        return np.asarray(held + (weight * np.sin(self.angle) if weight else 0.0))
 
     def displaced(self, values: Mapping[str, float], shift: Signal, rate: Signal) -> Signal:
         """The load torque [N.m] that a shaft needs which is a `shift` [rad], moving by [rad/s], from the measured."""
@@ -227,21 +263,11 @@ def motion_of(run: Run, model: Model, constant: float) -> Motion:
         raw_command=np.concatenate([command[:1], 0.5 * (command[1:] + command[:-1])]),
         supply=inputs.supply_voltage,
         closed=closed,
+        noise=noise_of(time, shown),
     )
-    usable = moving(whole, noise_of(time, shown)) & (np.interp(time, run.time, run.counts.astype(float)) > 0.99)
-    usable &= whole.angle > actuator.lower_stop + NEAR_STOP * actuator.scales.angle
-    usable &= whole.angle < actuator.upper_stop - NEAR_STOP * actuator.scales.angle
+    usable = whole.all_of_filter(whole.moving) & whole.apart
+    usable &= np.interp(time, run.time, run.counts.astype(float)) > 0.99
     for gap in np.flatnonzero(np.diff(run.time) > GAP * step):
         usable &= (time < run.time[gap] - window * step) | (time > run.time[gap + 1] + window * step)
     usable[:window] = usable[-window:] = False
     return Motion(whole, np.flatnonzero(usable)[:: max(window // KEPT_OF_FILTER, 1)])
-
-
-def moving(whole: Filtered, noise: float) -> Flags:
-    """Where the shaft surely moves over all of the filter, shape (samples,); `noise` [rad, or rad/s] of the angle."""
-    window = whole.window
-    spread = noise / math.sqrt(window)
-    if whole.actuator.quantity != "speed":
-        spread = noise * math.sqrt(12.0 / window**3) / whole.step
-    sure = np.abs(whole.velocity) > SURELY_MOVING * spread
-    return np.asarray(np.convolve(sure, np.ones(window), "same") > window - 0.5)

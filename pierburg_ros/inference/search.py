@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass
+from operator import attrgetter
 
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
@@ -205,11 +206,12 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
 
 
 def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
-    """The best promises of each of so many `effects`, in turn the best by simulation and by the balance.
+    """The best promises of each of so many `effects`, in turn the best by simulation, by the balance and at rests.
 
-    What promises little by either is left out.
+    What promises little by each is left out.
     """
-    orders = (ordered(promised, lambda each: each.simulated), ordered(promised, lambda each: each.along))
+    shares = ("simulated", "along", "at_rests")
+    orders = (ordered(promised, attrgetter(share)) for share in shares)
     groups: dict[str, list[Promise]] = {}
     for promise in filter(None, itertools.chain.from_iterable(itertools.zip_longest(*orders))):
         group = groups.setdefault(promise.variant.effect, [])

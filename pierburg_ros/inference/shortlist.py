@@ -45,7 +45,8 @@ ROUNDS = 3
 class Promise:
     """A start of an added effect: all values by dotted name, and the shares of the error that it promises to take.
 
-    `simulated` is that of a pulled fit by one linear step, `along` that of the balance. `own` is the share, 0 to 1, of
+    `simulated` is that of a pulled fit by one linear step, `along` that of the balance, `at_rests` of the torque that
+    friction cannot bear at rests. `own` is the share, 0 to 1, of
     what the effect changes that no change of the values which are free already makes. `balanced` are all values by the
     balance with the effect acting.
     """
@@ -54,6 +55,7 @@ class Promise:
     values: dict[str, float]
     simulated: float
     along: float
+    at_rests: float
     own: float
     balanced: dict[str, float]
 
@@ -168,13 +170,14 @@ class Reading:
     """A start of an effect as the balance reads it.
 
     `starts` differ in phase alone. `values` are all values by dotted name of a fit of the balance beside the effect;
-    `share` is what it takes of the error that the balance leaves without it.
+    `share` is what it takes of the error that the balance leaves without it, and `at_rests` of that at rests.
     """
 
     variant: Variant
     starts: list[Start]
     values: dict[str, float]
     share: float
+    at_rests: float
 
 
 def promises(
@@ -204,6 +207,7 @@ def read(
     for variant, starts in candidates:
         if variant.effect in acting:
             continue
+        starts, at_rests = _told_by_rests(balance, values, variant, starts)
         several, declared = _in_quadrature(variant.effect, starts), EFFECT[variant.effect]
         side, project, left = sides[declared.dated]
         if declared.along is not None and declared.mark is None:
@@ -214,8 +218,23 @@ def read(
             begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
             share = 1.0 - rest / max(float(left @ left), 1e-300)
             # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
-            readings.append(Reading(variant, begun if share > 1.0 / left.size else group, settled, share))
+            begun = begun if share > 1.0 / left.size else group
+            readings.append(Reading(variant, begun, settled, share, at_rests))
     return inside, readings
+
+
+def _told_by_rests(
+    balance: Balance, values: Mapping[str, float], variant: Variant, starts: list[dict[str, float]]
+) -> tuple[list[dict[str, float]], float]:
+    """Starts with the numbers that rests of the shaft tell, where these make it no weaker, and the share they take."""
+    effect = EFFECT[variant.effect]
+    if effect.at_rests is None:
+        return starts, 0.0
+    told, share = effect.at_rests([rest for motion in balance.motions for rest in motion.rests], values)
+    if any(value < min(start[name] for start in starts) for name, value in told.items()):
+        return starts, 0.0
+    several = [{**start, **told} for start in starts]
+    return [start for place, start in enumerate(several) if start not in several[:place]], share
 
 
 def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
@@ -337,9 +356,21 @@ def _promise(fit: Fit, reading: Reading) -> Promise | None:
     own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
     scale, fall = _step(changed, beside(before, fit.basis), _limits(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
+    if EFFECT[variant.effect].mark is not None:
+        # where events jump a linear step tells little: what it leaves there is simulated
+        fall = max(fall, fit.chi2 - _chi2_at(fit, reading))
     simulated = fall / max(fit.chi2, 1e-300)
     values = in_order(added(fit.values, variant, start), fitter.nominal)
-    return Promise(variant, values, simulated, reading.share, own, reading.values)
+    return Promise(variant, values, simulated, reading.share, reading.at_rests, own, reading.values)
+
+
+def _chi2_at(fit: Fit, reading: Reading) -> float:
+    """What the values of a reading leave of the samples of a fit; infinite where no model can have them."""
+    try:
+        left = fit.fitter.fitted(fit.explanation, in_order(reading.values, fit.fitter.nominal))
+    except InputError:
+        return math.inf
+    return float(left @ left)
 
 
 def _step(columns: Signal, left: Signal, limits: tuple[float, float]) -> tuple[Signal, float]:
