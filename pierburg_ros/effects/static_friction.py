@@ -28,7 +28,7 @@ def at_rests(rests: Sequence[Motion], values: Mapping[str, float]) -> tuple[Star
     beyond = [float(np.max(np.abs(rest.held(values)))) - values["coulomb_friction"] for rest in rests] or [0.0]
     excess = float(np.quantile(beyond, BORNE))
     before, after = (float(np.sum(np.square(np.maximum(each, 0.0)))) for each in (beyond, np.subtract(beyond, excess)))
-    return {"breakaway_torque": excess}, 1.0 - after / max(before, 1e-300)
+    return {"breakaway_torque": excess}, 1.0 - after / before if before > 0.0 else 0.0
 
 
 EFFECT = Effect(

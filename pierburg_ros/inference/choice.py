@@ -111,29 +111,25 @@ def chosen(
         explained = any(adequate(fit) and jumps(fit.explanation) for fit in fits)
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
-    everything = [described, *fits]
+    whole, everything = list(fits), [described, *fits]
     apart = next(fit for fit in fits if bare(fit)).explanation.drifted
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
-
-    def able(several: Sequence[Fit]) -> list[Fit]:
-        """Those of several fits that may be chosen: all that explain, else the nearest that is sure of its names."""
-        return list(several) if explained else sorted(named_alone(several, everything), key=lambda fit: fit.chi2)[:1]
-
-    whole = able(fits)
-    own = [described, *whole, *fewest([described, *whole], parameters, pool)]
-    best = Score.of(own).best(own, apart)
+        whole = [min(named_alone(fits, everything), key=lambda fit: fit.chi2)]
+    everything += fewest([described, *whole], parameters, pool)
+    able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
+    best = Score.of(able).best(able, apart)
     if len(best.explanation.drifted) > 1:
-        alike = aliases(next(fit for fit in fits if key(fit) == key(best)))
+        alike = list(aliases(next(fit for fit in fits if key(fit) == key(best))))
+        alike += fewest([described, *alike], parameters, pool)
         everything += alike
-        alike = able(alike)
-        own += [*alike, *fewest([described, *alike], parameters, pool)]
-        best = Score.of(own).best(own, apart)
+        able += alike if explained else named_alone(alike, everything)
+        best = Score.of(able).best(able, apart)
     best, dropped = needed(best, pool)
-    everything += [*own, *dropped, *in_place(best, whole, parameters, pool)]
+    everything += [*dropped, *in_place(best, whole, parameters, pool)]
     score = Score.of([best, *everything])
-    named, others = names(best, everything, explained)
+    own, others = names(best, everything, explained)
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
@@ -144,7 +140,7 @@ def chosen(
         described=known[0],
         estimated=next(fit for fit in weakest if bare(fit)),
         fits=(handed, *known),
-        names=named,
+        names=own,
         doubted=others,
         ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )

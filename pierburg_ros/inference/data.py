@@ -32,7 +32,7 @@ GAP = 3.0
 FIRST = 8
 """Samples that tell where a shaft starts and how fast it moves. Chosen: more would bend, fewer say nothing; a pulled
 simulation forgets their error."""
-FORGOTTEN = 8.0
+SETTLING_TIMES = 8.0
 """The actuator's own times after which a simulation counts that does not begin at rest on a stop: nothing else tells
 its velocity, and how its gear is wound up. Derived: with both poles of its error there a pulled simulation keeps
 (1 + 8) exp(-8) of it, 0.3 %."""
@@ -206,7 +206,7 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     counts = np.ones(recording.time.size, dtype=bool)
     for start, end in recording.unknown_input:
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    settled = recording.time[0] + (0.0 if rests else FORGOTTEN * actuator.scales.time)
+    settled = recording.time[0] + (0.0 if rests else SETTLING_TIMES * actuator.scales.time)
     counts &= recording.time >= settled
     return Run(
         recording.name, number, inputs, recording.time, measured, shown, settled, block, counts, actuator.quantity

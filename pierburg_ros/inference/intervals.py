@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pierburg_ros.arrays import Signal
+from pierburg_ros.effects import EFFECT
+from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import ABOVE, Coordinates
 from pierburg_ros.inference.covariance import RANK, Spread, spread
 from pierburg_ros.inference.explanation import Explanation
@@ -37,6 +39,12 @@ TOGETHER = 0.99
 ON_BOUND = 1e-6
 """Distance from a bound, as a share of the range, within which a fit ended on it. Derived: far above rounding, and far
 below any step of a fit."""
+TWO_SIDED = 3.84
+"""Rise of -2 log likelihood at the ends of a 95 % interval. Derived: the square of 1.96."""
+MOVED_OUT = 4
+"""Times that an end is moved out. Work: each costs a fit from near its end."""
+OUTWARD = 1.5
+"""Factor by which it is moved. Chosen: an interval is then too wide by this factor at most."""
 NUDGE = 1e-6
 """Step in coordinates for the slope of a value. Derived: conversions are smooth; the error is 1e-12."""
 
@@ -79,7 +87,7 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     found = {}
     for name in own.names:
         place, value = whole.names.index(name), coordinates.values(point)[name]
-        at_bound, ends = bool(on_bound[place]), _ends(coordinates, point, name, known)
+        at_bound, ends = bool(on_bound[place]), _profiled(fit, name, _ends(coordinates, point, name, known))
         ci95 = None if at_bound or not told[place] else ends
         near = ci95 is not None and max(value - ci95[0], ci95[1] - value) <= HALF_KNOWN * abs(value)
         partners = tuple(whole.names[other] for other in together(known.matrix, place))
@@ -128,6 +136,37 @@ def _ends(coordinates: Coordinates, point: Signal, name: str, known: Spread) -> 
     move = known.matrix @ slope / max(math.sqrt(float(slope @ known.matrix @ slope)), 1e-300)
     low, high = (coordinates.values(point + side * known.factor * move)[name] for side in (-1.0, 1.0))
     return min(low, high), max(low, high)
+
+
+def _profiled(fit: Fit, name: str, ends: tuple[float, float]) -> tuple[float, float]:
+    """The ends of an interval, moved out while a fit with the value held there is as likely.
+
+    Only of effects that make events: where these come, numbers that move together bend, and slopes do not tell that.
+    """
+    variant = next((each for each in fit.explanation.variants if name in each.names), None)
+    if variant is None or EFFECT[variant.effect].mark is None:
+        return ends
+    own, value = name.removeprefix(f"{variant.effect}."), fit.values[name]
+    possible = fit.chi2 + TWO_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
+
+    def moved(end: float) -> float:
+        for _ in range(MOVED_OUT):
+            held = replace(
+                variant,
+                free=tuple(each for each in variant.free if each != own),
+                fixed=(*variant.fixed, (own, end)),
+            )
+            variants = tuple(held if each == variant else each for each in fit.explanation.variants)
+            try:
+                there = fit.fitter.fit(replace(fit.explanation, variants=variants), {**fit.values, name: end})
+            except InputError:
+                return end
+            if there.chi2 > possible:
+                return end
+            end = value + OUTWARD * (end - value)
+        return end
+
+    return moved(ends[0]), moved(ends[1])
 
 
 def by_run(fit: Fit) -> tuple[Signal, ...]:

@@ -72,7 +72,9 @@ class Filtered:
 
     def smooth(self, values: Signal, derivative: int = 0) -> Signal:
         """`values` or a derivative of them behind the filter."""
-        return np.asarray(savgol_filter(values, self.window, 2, deriv=derivative) / self.step**derivative)
+        return np.asarray(
+            savgol_filter(values, self.window, 2, deriv=derivative, mode="nearest") / self.step**derivative
+        )
 
     @cached_property
     def moving(self) -> Flags:

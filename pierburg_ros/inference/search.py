@@ -118,14 +118,14 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
 def aliases(fit: Fit, search: Search) -> list[Fit]:
     """A fit with an effect added that may stand for its drifts: what equals them, and what promises most beside.
 
-    None where the effort is spent.
+    None where the effort is spent. What promises most on a fit that leaves more than noise was grown on it before.
     """
     if fit.fitter.effort.over:
         return []
     search.tell(f"what equals the drifts beside {label(fit)}")
     few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
     promised = promises(fit, search.balance, few, search.pool)
-    most = best_of_each(promised, TRIED)
+    most = best_of_each(promised, TRIED) if adequate(fit) else []
     return best_of_support(fits_of(fit, [*most, *(p for p in promised if p.own < ALIAS and p not in most)], search))
 
 

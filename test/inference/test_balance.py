@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, recording
+from support.recordings import NOMINAL, recording, recording_in_closed_loop
 
+from pierburg_ros.effects.static_friction import at_rests
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.data import data_of
@@ -85,3 +86,17 @@ def test_a_position_is_read_as_the_hall_voltage_that_shows_it():
     as_position = replace(hall, quantity="position", measured=angle)
     run = data_of([as_position], Model.nominal(NOMINAL.actuator)).runs[0]
     assert run.measured == pytest.approx(hall.measured)
+
+
+@pytest.mark.parametrize("excess", [0.0, 0.07])
+def test_rests_tell_how_hard_a_shaft_sticks(excess):
+    sliding = NOMINAL.values["coulomb_friction"]
+    sticks = {"static_friction.breakaway_torque": sliding + excess, "static_friction.stribeck_velocity": 0.05}
+    rests = balance_of(recording_in_closed_loop(sticks if excess else {})).motions[0].rests
+    told, _ = at_rests(rests, NOMINAL.values)
+    # a rest that ends by a step of the duty bears less before it; the filter blurs what it bears
+    assert told["breakaway_torque"] == pytest.approx(excess, abs=0.1 * sliding)
+
+
+def test_without_a_rest_nothing_is_told():
+    assert at_rests([], NOMINAL.values) == ({"breakaway_torque": 0.0}, 0.0)
