@@ -54,8 +54,7 @@ class Run:
 
     `shown` is where it begins, as `plant.decode.begun` reads it; from `settled` [s] on a pulled simulation has
     forgotten what of that is not known. `block` is the number of the block of each sample and `counts` whether it
-    counts, both shape (samples,): not where the input is unknown, nor before it has settled. `number` counts
-    recordings.
+    counts, both shape (samples,): not where the input is unknown. `number` counts recordings.
     """
 
     name: str
@@ -129,8 +128,8 @@ class Data:
 
     @cached_property
     def counts(self) -> Flags:
-        """Whether each sample of all runs counts."""
-        return np.concatenate([run.counts for run in self.runs])
+        """Whether each sample of all runs counts: not before a simulation has settled."""
+        return np.concatenate([run.counts & (run.time >= run.settled) for run in self.runs])
 
     def by_run(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all samples, shape (samples,), one array for each run."""
@@ -206,10 +205,18 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     counts = np.ones(recording.time.size, dtype=bool)
     for start, end in recording.unknown_input:
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    settled = recording.time[0] + (0.0 if rests else SETTLING_TIMES * actuator.scales.time)
-    counts &= recording.time >= settled
+    settling = 0.0 if rests else min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
     return Run(
-        recording.name, number, inputs, recording.time, measured, shown, settled, block, counts, actuator.quantity
+        recording.name,
+        number,
+        inputs,
+        recording.time,
+        measured,
+        shown,
+        recording.time[0] + settling,
+        block,
+        counts,
+        actuator.quantity,
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -87,7 +88,7 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     found = {}
     for name in own.names:
         place, value = whole.names.index(name), coordinates.values(point)[name]
-        at_bound, ends = bool(on_bound[place]), _profiled(fit, name, _ends(coordinates, point, name, known))
+        at_bound, ends = bool(on_bound[place]), _ends(fit, coordinates, point, name, known)
         ci95 = None if at_bound or not told[place] else ends
         near = ci95 is not None and max(value - ci95[0], ci95[1] - value) <= HALF_KNOWN * abs(value)
         partners = tuple(whole.names[other] for other in together(known.matrix, place))
@@ -125,7 +126,7 @@ def together(matrix: Signal, place: int) -> list[int]:
     return alone
 
 
-def _ends(coordinates: Coordinates, point: Signal, name: str, known: Spread) -> tuple[float, float]:
+def _ends(fit: Fit, coordinates: Coordinates, point: Signal, name: str, known: Spread) -> tuple[float, float]:
     """The least and the largest value of a quantity within its 95 %, the others where they are likeliest then."""
     slope = np.zeros(point.size)
     for each in (name, ABOVE.get(name)):
@@ -133,40 +134,40 @@ def _ends(coordinates: Coordinates, point: Signal, name: str, known: Spread) -> 
             place = coordinates.names.index(each)
             axis, at = coordinates.axes[place], float(point[place])
             slope[place] = (axis.value(at + NUDGE) - axis.value(at - NUDGE)) / (2.0 * NUDGE)
-    move = known.matrix @ slope / max(math.sqrt(float(slope @ known.matrix @ slope)), 1e-300)
-    low, high = (coordinates.values(point + side * known.factor * move)[name] for side in (-1.0, 1.0))
+    move = known.factor * (known.matrix @ slope / max(math.sqrt(float(slope @ known.matrix @ slope)), 1e-300))
+
+    def end(side: float) -> float:
+        """The end on one side, moved out while a fit with the value held there is as likely."""
+        for _ in range(MOVED_OUT):
+            values = coordinates.values(np.clip(point + side * move, *coordinates.bounds))
+            if not _possible(fit, name, values):
+                break
+            side *= OUTWARD
+        return coordinates.values(point + side * move)[name]
+
+    low, high = end(-1.0), end(1.0)
     return min(low, high), max(low, high)
 
 
-def _profiled(fit: Fit, name: str, ends: tuple[float, float]) -> tuple[float, float]:
-    """The ends of an interval, moved out while a fit with the value held there is as likely.
+def _possible(fit: Fit, name: str, values: dict[str, float]) -> bool:
+    """Whether a fit from some values on, with the quantity held there, is as likely as 95 % allow.
 
     Only of effects that make events: where these come, numbers that move together bend, and slopes do not tell that.
     """
     variant = next((each for each in fit.explanation.variants if name in each.names), None)
     if variant is None or EFFECT[variant.effect].mark is None:
-        return ends
-    own, value = name.removeprefix(f"{variant.effect}."), fit.values[name]
+        return False
+    own = name.removeprefix(f"{variant.effect}.")
+    others = tuple(each for each in variant.free if each != own)
+    held = replace(variant, free=others, fixed=(*variant.fixed, (own, values[name])))
+    variants = tuple(held if each == variant else each for each in fit.explanation.variants)
     possible = fit.chi2 + TWO_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
-
-    def moved(end: float) -> float:
-        for _ in range(MOVED_OUT):
-            held = replace(
-                variant,
-                free=tuple(each for each in variant.free if each != own),
-                fixed=(*variant.fixed, (own, end)),
-            )
-            variants = tuple(held if each == variant else each for each in fit.explanation.variants)
-            try:
-                there = fit.fitter.fit(replace(fit.explanation, variants=variants), {**fit.values, name: end})
-            except InputError:
-                return end
-            if there.chi2 > possible:
-                return end
-            end = value + OUTWARD * (end - value)
-        return end
-
-    return moved(ends[0]), moved(ends[1])
+    for others_at in (values, {name: values[name]}):
+        with suppress(InputError):
+            there = fit.fitter.fit(replace(fit.explanation, variants=variants), {**fit.values, **others_at})
+            if there.chi2 <= possible:
+                return True
+    return False
 
 
 def by_run(fit: Fit) -> tuple[Signal, ...]:
