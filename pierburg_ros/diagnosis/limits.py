@@ -218,8 +218,7 @@ def _fits(fit: Fit, case: Case, factor: float, possible: float) -> bool:
     if any(parameter.above for parameter in effect.parameters):
         # what is counted from a parameter would vanish in a fit of that parameter
         return False
-    others = tuple(name for name in case.variant.free if name != strength)
-    held = Variant(effect.id, others, (*case.variant.fixed, (strength, case.at(factor)[strength])))
+    held = case.variant.holding(strength, case.at(factor)[strength])
     values = in_order(_values(fit, case, factor), fit.fitter.nominal)
     try:
         beside = fit.fitter.fit(fit.explanation.plus(held), values, FOLLOWING)

@@ -104,7 +104,7 @@ def chosen(
     slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, only
     effects count that are sure enough, beside whatever else. `aliases` are a fit with what may stand for its drifts.
     """
-    weakest, last = tuple(fits), fits[0].fitter
+    weakest, last, estimated = tuple(fits), fits[0].fitter, next(fit for fit in fits if bare(fit))
     explained = any(map(adequate, fits))
     if not explained:
         fits = list(pool.map(lambda fit: strongest(fit.fitter).fit(fit.explanation, fit.values), fits))
@@ -112,7 +112,7 @@ def chosen(
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
     whole, everything = list(fits), [described, *fits]
-    apart = next(fit for fit in fits if bare(fit)).explanation.drifted
+    apart = estimated.explanation.drifted
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
@@ -138,7 +138,7 @@ def chosen(
         handed=handed,
         predictor=predictor(handed, (handed, *known)),
         described=known[0],
-        estimated=next(fit for fit in weakest if bare(fit)),
+        estimated=estimated,
         fits=(handed, *known),
         names=own,
         doubted=others,

@@ -20,6 +20,10 @@ class Variant:
         """The dotted names of its free parameters."""
         return tuple(f"{self.effect}.{name}" for name in self.free)
 
+    def holding(self, name: str, value: float) -> Variant:
+        """The same with one of its free parameters held at a value."""
+        return Variant(self.effect, tuple(each for each in self.free if each != name), (*self.fixed, (name, value)))
+
 
 AFTER = "@after"
 """Marks the value of a parameter after its change in the middle of a recording."""

@@ -168,11 +168,11 @@ class Fitter:
 
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
-        """The pull on each run: the strongest of the ladder until it has settled."""
+        """The pull on each run: until it has settled, as strong as the first of the ladder at least."""
         inertial = inertia_time(self.nominal) > self.data.period and self.data.actuator.quantity != "speed"
-        strongest = ladder(self.data)[0]
+        first = min(ladder(self.data)[0], self.constant)
         return tuple(
-            Pull.every(run.time, np.where(run.time < run.settled, strongest, self.constant), inertial)
+            Pull.every(run.time, np.where(run.time < run.settled, first, self.constant), inertial)
             for run in self.data.runs
         )
 
