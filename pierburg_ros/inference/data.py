@@ -33,7 +33,7 @@ FIRST = 8
 """Samples that tell where a shaft starts and how fast it moves. Chosen: more would bend, fewer say nothing; a pulled
 simulation forgets their error."""
 SETTLING_TIMES = 8.0
-"""The actuator's own times after which a simulation counts that does not begin at rest on a stop: nothing else tells
+"""The actuator's own times after which a simulation counts that does not begin on a stop: nothing else tells
 its velocity, and how its gear is wound up. Derived: with both poles of its error there a pulled simulation keeps
 (1 + 8) exp(-8) of it, 0.3 %."""
 RESTING = 5.0
@@ -201,11 +201,10 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     if not on_stop and actuator.load != "none":
         # away from its stop only a command holds a shaft: the first one was in force before
         inputs = inputs.held_before()
-    rests = on_stop and shown[1] == 0.0
     counts = np.ones(recording.time.size, dtype=bool)
     for start, end in recording.unknown_input:
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    settling = 0.0 if rests else min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
+    settling = 0.0 if on_stop else min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
     return Run(
         recording.name,
         number,

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 
 from pierburg_ros.inference.balance import balance_of
 from pierburg_ros.inference.data import all_fitted
-from pierburg_ros.inference.evidence import rms
 from pierburg_ros.inference.explanation import Explanation
-from pierburg_ros.inference.fit import Fitter, strongest
+from pierburg_ros.inference.fit import Fitter, rms_of, strongest
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.replay import parts_of, pull_of
 from pierburg_ros.inference.search import free_parameters
@@ -64,4 +63,4 @@ def visibility(recording: Recording, model: Model, changed: Model, name: str) ->
 def _left(fitter: Fitter, drifts: Sequence[str]) -> float:
     """What all that may drift leaves of measured signals, root mean square in the measured unit."""
     found = fitter.fit(Explanation(tuple(drifts)), fitter.nominal.values, BRIEF)
-    return rms(found.residual) * fitter.data.noise
+    return rms_of(found, fitter.data.train)
