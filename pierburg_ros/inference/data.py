@@ -25,8 +25,9 @@ BLOCK = 15.7
 """Length of the blocks that are fitted, choose and judge in turn, in the actuator's own time; less where there would be
 fewer than 16. Chosen: 1.5 s for the valve, longer than the 1.15 s in which it forgets; not varied."""
 CYCLE = 8
-"""Blocks in a cycle: the third chooses, the seventh judges, the others are fitted. Chosen: an eighth each, as far apart
-as possible; not varied."""
+"""Blocks in a cycle: one chooses, one judges, the others are fitted. Chosen: an eighth each; not varied."""
+CHOOSES, JUDGES = 2, 6
+"""Which of a cycle choose and judge, from 0 on. Chosen: as far apart as possible."""
 GAP = 3.0
 """Median intervals from which an interval is a gap. Given: `gaps` is defined so in diagnosis.json."""
 FIRST = 8
@@ -79,7 +80,8 @@ class Data:
     """All recordings of one actuator.
 
     `noise` is the standard deviation of the error that no model can explain, and `step` that of the converter where it
-    is coarse beside the noise, otherwise 0, both in the measured unit. `rounding` is that of `lasting_rounding`.
+    is coarse beside the noise, otherwise 0, both in the measured unit. `rounding` is that of `lasting_rounding`. In
+    each cycle of blocks the one that `chooses`, if any, and the one that `judges` are not fitted.
     """
 
     actuator: Actuator
@@ -88,6 +90,8 @@ class Data:
     step: float = 0.0
     rounding: float = 0.0
     warnings: tuple[str, ...] = ()
+    chooses: int | None = CHOOSES
+    judges: int = JUDGES
 
     @property
     def scales(self) -> Scales:
@@ -138,17 +142,17 @@ class Data:
     @cached_property
     def train(self) -> Flags:
         """Which samples are fitted, shape (samples,)."""
-        return np.asarray(self.counts & (self.block % (CYCLE // 2) != CYCLE // 4))
+        return np.asarray(self.counts & ~self.validation & ~self.test)
 
     @cached_property
     def validation(self) -> Flags:
         """Which samples choose between explanations."""
-        return np.asarray(self.counts & (self.block % CYCLE == CYCLE // 4))
+        return np.asarray(self.counts & (self.block % CYCLE == self.chooses))
 
     @cached_property
     def test(self) -> Flags:
         """Which samples neither fit nor choice uses."""
-        return np.asarray(self.counts & (self.block % CYCLE == CYCLE // 4 + CYCLE // 2))
+        return np.asarray(self.counts & (self.block % CYCLE == self.judges))
 
 
 def data_of(recordings: Sequence[Recording], nominal: Model) -> Data:

@@ -128,8 +128,12 @@ class Fit:
     @property
     def ratio(self) -> float:
         """Fitted error over the noise, root mean square."""
-        data = self.fitter.data
-        return math.sqrt(self.chi2 / self.fitted.size + data.half_step**2 / 3.0)
+        return self.ratio_of(self.fitter.data.train)
+
+    def ratio_of(self, samples: Flags) -> float:
+        """The same of some samples; 0 where there are none."""
+        left, half_step = beyond(self.residual[samples], self.fitter.data.half_step), self.fitter.data.half_step
+        return math.sqrt(float(np.mean(np.square(left))) + half_step**2 / 3.0) if left.size else 0.0
 
     @cached_property
     def repetition(self) -> float:
