@@ -1,5 +1,7 @@
 """Recordings in, a choice out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.recordings import NOMINAL, recording, recording_in_closed_loop
@@ -65,6 +67,14 @@ def test_where_a_recording_was_cut_shows_nothing(begin, hidden):
     assert choice.explained
     assert named(choice) == {name.split(".")[0] for name in hidden}
     assert choice.chosen.explanation.drifted == ()
+
+
+def test_what_misses_blocks_that_were_held_out_is_not_called_explained():
+    described = recording({})
+    within = (described.time > 9.3) & (described.time < 9.9)
+    choice = infer([replace(described, measured=described.measured + np.where(within, 0.03, 0.0))], NOMINAL).choice
+    assert choice.verdict == "unexplained"
+    assert np.any(choice.chosen.fitter.data.train[within])
 
 
 def test_two_effects_are_named():
