@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.signal import lfilter
 
 from pierburg_ros.arrays import Signal
 from pierburg_ros.effects.effect import Effect, Elsewhere, Motion, Parameter, Variant, grid
@@ -25,6 +24,8 @@ def along(motion: Motion, values: Mapping[str, float]) -> Signal:
 
 def risen(motion: Motion, values: Mapping[str, float]) -> Signal:
     """Temperature rise [K] along a whole motion, by the power that heats the winding at its own resistance then."""
+    from scipy.signal import lfilter  # takes long to load, and only a balance needs it
+
     passing, capacity = (values[f"thermal_resistance.{name}"] for name in ("thermal_resistance", "heat_capacity"))
     cold = values["armature_resistance"]
     share = motion.step / (passing * capacity + motion.step)
