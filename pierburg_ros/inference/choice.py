@@ -105,15 +105,17 @@ def chosen(
     """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
 
     Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
-    slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, only
-    effects count that are sure enough, beside whatever else. `aliases` are a fit with what may stand for its drifts,
-    and `begun_again` is the same explanation from other starts, where its cost has several minima.
+    slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, or one
+    that makes none does as well, only effects count that are sure enough, beside whatever else. `aliases` are a fit
+    with what may stand for its drifts, and `begun_again` is the same explanation from other starts, where its cost has
+    several minima.
     """
     weakest, last, estimated = tuple(fits), fits[0].fitter, next(fit for fit in fits if bare(fit))
     explained = any(map(adequate, fits))
     if not explained:
         fits = list(pool.map(lambda fit: strongest(fit.fitter).fit(fit.explanation, fit.values), fits))
-        explained = any(adequate(fit) and jumps(fit.explanation) for fit in fits)
+        enough = [fit for fit in fits if adequate(fit)]
+        explained = bool(enough) and all(jumps(fit.explanation) for fit in enough)
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
     whole, everything = list(fits), [described, *fits]
