@@ -160,10 +160,14 @@ def bare(fit: Fit) -> bool:
 
 @dataclass(frozen=True)
 class Score:
-    """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of a quantity."""
+    """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of a quantity.
+
+    `rounded` is the squared error that a coarse converter makes beside: what is far below it tells nothing.
+    """
 
     effective: float
     least: float
+    rounded: float
     price: float
 
     @staticmethod
@@ -174,12 +178,14 @@ class Score:
         (Schwarz, Estimating the dimension of a model, 1978).
         """
         least = min(fits, key=lambda fit: fit.chi2)
-        effective = least.fitted.size / least.repetition
-        return Score(effective, least.chi2, SIGNIFICANT if adequate(least) else math.log(max(effective, math.e)))
+        effective, rounded = least.fitted.size / least.repetition, least.fitted.size * least.rounding
+        price = SIGNIFICANT if adequate(least) else math.log(max(effective, math.e))
+        return Score(effective, least.chi2, rounded, price)
 
     def lack(self, chi2: float) -> float:
         """How much less likely the recordings are than by the best fit."""
-        return self.effective * math.log(max(chi2, 1e-300) / max(self.least, 1e-300))
+        before, after = (max(each + self.rounded, 1e-300) for each in (chi2, self.least))
+        return self.effective * math.log(before / after)
 
     def __call__(self, fit: Fit) -> float:
         """What is least for the explanation that is chosen."""

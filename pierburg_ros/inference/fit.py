@@ -132,8 +132,13 @@ class Fit:
 
     def ratio_of(self, samples: Flags) -> float:
         """The same of some samples; 0 where there are none."""
-        left, half_step = beyond(self.residual[samples], self.fitter.data.half_step), self.fitter.data.half_step
-        return math.sqrt(float(np.mean(np.square(left))) + half_step**2 / 3.0) if left.size else 0.0
+        left = beyond(self.residual[samples], self.fitter.data.half_step)
+        return math.sqrt(float(np.mean(np.square(left))) + self.rounding) if left.size else 0.0
+
+    @property
+    def rounding(self) -> float:
+        """Mean square error [noise^2] of a coarse converter, which no fit sees; 0 where steps are fine."""
+        return self.fitter.data.half_step**2 / 3.0
 
     @cached_property
     def repetition(self) -> float:
