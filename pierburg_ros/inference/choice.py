@@ -124,17 +124,17 @@ def chosen(
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
         whole = [min(named_alone(fits, everything), key=lambda fit: fit.chi2)]
-    everything += fewest([described, *whole], parameters, pool)
+    everything += fewest([described, *whole], parameters, pool, begun_again)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)
     if len(best.explanation.drifted) > 1:
         alike = list(aliases(next(fit for fit in fits if key(fit) == key(best))))
-        alike += fewest([described, *alike], parameters, pool)
+        alike += fewest([described, *alike], parameters, pool, begun_again)
         everything += alike
         able += alike if explained else named_alone(alike, everything)
         best = Score.of(able).best(able, apart)
     best, dropped = needed(begun_again(best), pool)
-    everything += [*dropped, *in_place(best, whole, parameters, pool)]
+    everything += [*dropped, *in_place(best, whole, parameters, pool, begun_again)]
     score = Score.of([best, *everything])
     own, others = names(best, everything, explained)
     handed = polished(last.fit(best.explanation, best.values))
@@ -205,7 +205,9 @@ class Score:
         return self.lack(fit.chi2) <= self.lack(best.chi2) + TIED
 
 
-def fewest(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> list[Fit]:
+def fewest(
+    fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, begun_again: Callable[[Fit], Fit]
+) -> list[Fit]:
     """Fits with the effects of `fits`, of which the first has no drifts, and fewer drifts, by size.
 
     It ends where one more quantity cannot pay, even if it leaves as little as all drifts together.
@@ -217,13 +219,22 @@ def fewest(fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> li
         able = [each for each in parabolas if score.lack(each.fit.chi2) + score.price * size < best + TIED]
         if not able:
             break
-        found += fitted(((each, explanation) for each in able for explanation in each.best_of_size(size)), pool)
+        ways = ((each, explanation) for each in able for explanation in each.best_of_size(size))
+        found += fitted(ways, pool, begun_again)
     return found[len(fits) :]
 
 
-def fitted(pairs: Iterable[tuple[Parabola, Explanation]], pool: Executor) -> list[Fit]:
-    """A fit of each explanation from where a parabola is least."""
-    return list(pool.map(lambda pair: pair[0].fit.fitter.fit(pair[1], pair[0].values_of(pair[1])), pairs))
+def fitted(
+    pairs: Iterable[tuple[Parabola, Explanation]], pool: Executor, begun_again: Callable[[Fit], Fit]
+) -> list[Fit]:
+    """A fit of each explanation from where a parabola is least; again where it leaves more than that foretells."""
+
+    def one(pair: tuple[Parabola, Explanation]) -> Fit:
+        parabola, explanation = pair
+        fit = parabola.fit.fitter.fit(explanation, parabola.values_of(explanation))
+        return fit if fit.chi2 <= parabola.foretold(explanation) + TIED * fit.repetition else begun_again(fit)
+
+    return list(pool.map(one, pairs))
 
 
 def needed(best: Fit, pool: Executor) -> tuple[Fit, list[Fit]]:
@@ -249,7 +260,9 @@ def smaller_by_one(fit: Fit) -> list[tuple[Explanation, dict[str, float]]]:
     return less
 
 
-def in_place(best: Fit, fits: Sequence[Fit], parameters: Sequence[str], pool: Executor) -> list[Fit]:
+def in_place(
+    best: Fit, fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, begun_again: Callable[[Fit], Fit]
+) -> list[Fit]:
     """Fits in which two drifts stand in the place of one effect of the best."""
     own, pairs = set(best.explanation.effects), []
     for fit in fits:
@@ -257,7 +270,7 @@ def in_place(best: Fit, fits: Sequence[Fit], parameters: Sequence[str], pool: Ex
             parabola = Parabola.of(fit, parameters)
             kept = set(best.explanation.drifted)
             pairs += [(parabola, each) for each in parabola.best_of_size(best.size + 1) if kept <= set(each.drifted)]
-    return fitted(pairs, pool)
+    return fitted(pairs, pool, begun_again)
 
 
 @dataclass(frozen=True)
@@ -311,6 +324,10 @@ class Parabola:
             cost -= float(step @ (slope[free] / scale))
             move[free] -= step / scale
         return max(cost, 0.0), self.point + move
+
+    def foretold(self, explanation: Explanation) -> float:
+        """The least chi2 of an explanation."""
+        return self.cost([self.parameters.index(name) for name in explanation.drifted])[0]
 
     def values_of(self, explanation: Explanation) -> dict[str, float]:
         """The values by dotted name where the cost of an explanation is least; what does not drift is as described."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -160,10 +161,12 @@ def _possible(fit: Fit, name: str, values: dict[str, float]) -> bool:
         variant.holding(name.removeprefix(f"{variant.effect}."), values[name])
     )
     possible = fit.chi2 + TWO_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
-    try:
-        return fit.fitter.fit(held, {**fit.values, **values}).chi2 <= possible
-    except InputError:
-        return False
+    # along the ridge, and from the fit: a descent may end in a minimum beside either
+    for start in ({**fit.values, **values}, {**fit.values, name: values[name]}):
+        with suppress(InputError):
+            if fit.fitter.fit(held, start).chi2 <= possible:
+                return True
+    return False
 
 
 def by_run(fit: Fit) -> tuple[Signal, ...]:
