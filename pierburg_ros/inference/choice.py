@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -24,7 +24,7 @@ from pierburg_ros.inference.explanation import Explanation, id_of, jumps, withou
 from pierburg_ros.inference.explanation import quantities as quantities_of
 from pierburg_ros.inference.fit import Fit, adequate, excess, rms_of, strongest
 from pierburg_ros.inference.polish import polished
-from pierburg_ros.inference.search import DEEPEST, key
+from pierburg_ros.inference.search import DEEPEST, Search, aliases, begun_again, key
 from pierburg_ros.inference.shortlist import DEPENDENT
 
 REFITTED = 3
@@ -95,23 +95,15 @@ class Choice:
 Verdict = Literal["consistent", "parameter_drift", "missing_physics", "unexplained"]
 
 
-def chosen(
-    fits: Sequence[Fit],
-    parameters: Sequence[str],
-    pool: Executor,
-    aliases: Callable[[Fit], Sequence[Fit]],
-    begun_again: Callable[[Fit], Fit],
-) -> Choice:
+def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Choice:
     """The choice among `fits`, each with all drifts free; any of the base `parameters` may be what drifted.
 
     Where none of them leaves only noise they are compared with the strongest pull: what remains then costs least, and a
     slip at the wrong moment does not last. Where no effect that makes such slips leaves only noise there either, or one
-    that makes none does as well, only effects count that are sure enough, beside whatever else. `aliases` are a fit
-    with what may stand for its drifts, and `begun_again` is the same explanation from other starts, where its cost has
-    several minima.
+    that makes none does as well, only effects count that are sure enough, beside whatever else.
     """
     weakest, last, estimated = tuple(fits), fits[0].fitter, next(fit for fit in fits if bare(fit))
-    explained = any(map(adequate, fits))
+    pool, explained = search.pool, any(map(adequate, fits))
     if not explained:
         fits = list(pool.map(lambda fit: strongest(fit.fitter).fit(fit.explanation, fit.values), fits))
         enough = [fit for fit in fits if adequate(fit)]
@@ -124,17 +116,17 @@ def chosen(
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
         whole = [min(named_alone(fits, everything), key=lambda fit: fit.chi2)]
-    everything += fewest([described, *whole], parameters, pool, begun_again)
+    everything += fewest([described, *whole], parameters, search)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)
     if len(best.explanation.drifted) > 1:
-        alike = list(aliases(next(fit for fit in fits if key(fit) == key(best))))
-        alike += fewest([described, *alike], parameters, pool, begun_again)
+        alike = list(aliases(next(fit for fit in fits if key(fit) == key(best)), search))
+        alike += fewest([described, *alike], parameters, search)
         everything += alike
         able += alike if explained else named_alone(alike, everything)
         best = Score.of(able).best(able, apart)
-    best, dropped = needed(begun_again(best), pool)
-    everything += [*dropped, *in_place(best, whole, parameters, pool, begun_again)]
+    best, dropped = needed(begun_again(best, search), pool)
+    everything += [*dropped, *in_place(best, whole, parameters, search)]
     score = Score.of([best, *everything])
     own, others = names(best, everything, explained)
     handed = polished(last.fit(best.explanation, best.values))
@@ -205,36 +197,33 @@ class Score:
         return self.lack(fit.chi2) <= self.lack(best.chi2) + TIED
 
 
-def fewest(
-    fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, begun_again: Callable[[Fit], Fit]
-) -> list[Fit]:
+def fewest(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> list[Fit]:
     """Fits with the effects of `fits`, of which the first has no drifts, and fewer drifts, by size.
 
     It ends where one more quantity cannot pay, even if it leaves as little as all drifts together.
     """
     score, found = Score.of(fits), [*fits]
-    parabolas = list(pool.map(lambda fit: Parabola.of(fit, parameters), fits[1:]))
+    parabolas = list(search.pool.map(lambda fit: Parabola.of(fit, parameters), fits[1:]))
     for size in range(len(parameters) + DEEPEST + 1):
         best = min(map(score, found))
         able = [each for each in parabolas if score.lack(each.fit.chi2) + score.price * size < best + TIED]
         if not able:
             break
         ways = ((each, explanation) for each in able for explanation in each.best_of_size(size))
-        found += fitted(ways, pool, begun_again)
+        found += fitted(ways, search)
     return found[len(fits) :]
 
 
-def fitted(
-    pairs: Iterable[tuple[Parabola, Explanation]], pool: Executor, begun_again: Callable[[Fit], Fit]
-) -> list[Fit]:
+def fitted(pairs: Iterable[tuple[Parabola, Explanation]], search: Search) -> list[Fit]:
     """A fit of each explanation from where a parabola is least; again where it leaves more than that foretells."""
 
     def one(pair: tuple[Parabola, Explanation]) -> Fit:
         parabola, explanation = pair
-        fit = parabola.fit.fitter.fit(explanation, parabola.values_of(explanation))
-        return fit if fit.chi2 <= parabola.foretold(explanation) + TIED * fit.repetition else begun_again(fit)
+        foretold, values = parabola.lowest(explanation)
+        fit = parabola.fit.fitter.fit(explanation, values)
+        return fit if fit.chi2 <= foretold + TIED * fit.repetition else begun_again(fit, search)
 
-    return list(pool.map(one, pairs))
+    return list(search.pool.map(one, pairs))
 
 
 def needed(best: Fit, pool: Executor) -> tuple[Fit, list[Fit]]:
@@ -260,9 +249,7 @@ def smaller_by_one(fit: Fit) -> list[tuple[Explanation, dict[str, float]]]:
     return less
 
 
-def in_place(
-    best: Fit, fits: Sequence[Fit], parameters: Sequence[str], pool: Executor, begun_again: Callable[[Fit], Fit]
-) -> list[Fit]:
+def in_place(best: Fit, fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> list[Fit]:
     """Fits in which two drifts stand in the place of one effect of the best."""
     own, pairs = set(best.explanation.effects), []
     for fit in fits:
@@ -270,7 +257,7 @@ def in_place(
             parabola = Parabola.of(fit, parameters)
             kept = set(best.explanation.drifted)
             pairs += [(parabola, each) for each in parabola.best_of_size(best.size + 1) if kept <= set(each.drifted)]
-    return fitted(pairs, pool, begun_again)
+    return fitted(pairs, search)
 
 
 @dataclass(frozen=True)
@@ -325,19 +312,14 @@ class Parabola:
             move[free] -= step / scale
         return max(cost, 0.0), self.point + move
 
-    def foretold(self, explanation: Explanation) -> float:
-        """The least chi2 of an explanation."""
-        return self.cost([self.parameters.index(name) for name in explanation.drifted])[0]
-
-    def values_of(self, explanation: Explanation) -> dict[str, float]:
-        """The values by dotted name where the cost of an explanation is least; what does not drift is as described."""
-        drifted = [self.parameters.index(name) for name in explanation.drifted]
+    def lowest(self, explanation: Explanation) -> tuple[float, dict[str, float]]:
+        """Least chi2 of an explanation, and all values by dotted name there; what does not drift is as described."""
+        chi2, point = self.cost([self.parameters.index(name) for name in explanation.drifted])
         fitter = self.fit.fitter
         coordinates = fitter.coordinates(replace(self.fit.explanation, drifted=self.parameters))
-        lower, upper = coordinates.bounds
-        found = coordinates.values(np.clip(self.cost(drifted)[1], lower, upper))
+        found = coordinates.values(np.clip(point, *coordinates.bounds))
         held = {name: fitter.nominal.values[name] for name in self.parameters if name not in explanation.drifted}
-        return {**self.fit.values, **found, **held}
+        return chi2, {**self.fit.values, **found, **held}
 
 
 def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:

@@ -125,7 +125,7 @@ class Fit:
         """Sum of squares of the fitted residual."""
         return float(self.fitted @ self.fitted)
 
-    @property
+    @cached_property
     def ratio(self) -> float:
         """Fitted error over the noise, root mean square."""
         return self.ratio_of(self.fitter.data.train)

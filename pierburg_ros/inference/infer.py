@@ -16,7 +16,7 @@ from pierburg_ros.inference.data import Data, data_of
 from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.explanation import Variant
 from pierburg_ros.inference.fit import Effort, Fitter, ladder
-from pierburg_ros.inference.search import Progress, Search, aliases, begun_again, free_parameters, searched
+from pierburg_ros.inference.search import Progress, Search, free_parameters, searched
 from pierburg_ros.inference.shortlist import Span, forms, independent
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -82,6 +82,6 @@ def inferred_from(data: Data, nominal: Model, tell: Progress, jobs: int | None, 
     with workers(jobs) as pool:
         search = Search(balance, independent(fitter, balance, free), forms(data, nominal, span), pool, tell)
         fits = searched(fitter, search)
-        choice = chosen(fits, free, pool, lambda fit: aliases(fit, search), lambda fit: begun_again(fit, search))
+        choice = chosen(fits, free, search)
     choice = named_along(choice, balance, search.candidates)
     return Inferred(choice, balance, search.candidates, free, search.drifts, effort)

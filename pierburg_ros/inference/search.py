@@ -87,8 +87,8 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
                 break
             found.update(map(key, new))
             search.tell(f"{label(new[0])}, to the end")
-            led = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
-            before, leading = leading[0], nearest(led)
+            several = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
+            before, leading = leading[0], nearest(several)
             ended = best_of_support([*ended, *followed(leading, search.pool)])
             ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
             if excess(leading[0]) > WORTH_ADDING * excess(before):
@@ -137,11 +137,8 @@ def begun_again(fit: Fit, search: Search) -> Fit:
     """
     if not jumps(fit.explanation):
         return fit
-    again = fit
-    for constant in ladder(fit.fitter.data):
-        if constant <= fit.fitter.constant:
-            again = fit.fitter.pulled(constant).fit(fit.explanation, again.values)
-    best = min((fit, again), key=lambda each: each.chi2)
+    constants = [constant for constant in ladder(fit.fitter.data) if constant <= fit.fitter.constant]
+    best = min((fit, led(fit, constants)), key=lambda each: each.chi2)
     begun: list[dict[str, float]] = []
     for variant, starts in search.candidates:
         effect = EFFECT[variant.effect]
@@ -221,13 +218,15 @@ def changed(fit: Fit, search: Search) -> list[Fit]:
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
     """The same explanations fitted on, pulled ever more weakly, best first."""
+    several = pool.map(lambda fit: led(fit, ladder(fit.fitter.data)[1:]), fits)
+    return sorted(several, key=lambda fit: fit.chi2)
 
-    def one(fit: Fit) -> Fit:
-        for constant in ladder(fit.fitter.data)[1:]:
-            fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
-        return fit
 
-    return sorted(pool.map(one, fits), key=lambda fit: fit.chi2)
+def led(fit: Fit, constants: Iterable[float]) -> Fit:
+    """The same explanation fitted with each of the `constants` [s] of the pull, one after the other."""
+    for constant in constants:
+        fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
+    return fit
 
 
 def best_of_each(promised: Sequence[Promise], effects: int) -> list[Promise]:
