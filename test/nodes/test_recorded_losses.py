@@ -19,10 +19,10 @@ pytestmark = pytest.mark.ros
 
 
 def contents(path):
-    """Numbers of `/duty` in a file, their place in the topic, and the recorder's note of all losses."""
+    """Numbers of `/duty` in the order of the file, how many messages by topic, and the note of all losses."""
     with path.open("rb") as stream:
         reader = make_reader(stream)
-        found = [(m.sequence, c.topic) for _, c, m in reader.iter_messages()]
+        found = [(m.sequence, c.topic) for _, c, m in reader.iter_messages(log_time_order=False)]
         note = next(m.metadata for m in reader.iter_metadata() if m.name == LOSSES)
     return [number for number, topic in found if topic == "/duty"], Counter(topic for _, topic in found), note
 
