@@ -15,11 +15,10 @@ from pierburg_ros.effects import STEP
 from pierburg_ros.inference.choice import Choice
 from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.explanation import Variant
-from pierburg_ros.inference.fit import Fit, Fitter, excess, rms_of, strongest
+from pierburg_ros.inference.fit import Fit, adequate, rms_of, strongest
 from pierburg_ros.inference.infer import Inferred
 from pierburg_ros.inference.intervals import Interval, intervals
 from pierburg_ros.inference.least_squares import FULL
-from pierburg_ros.inference.replay import pull_of
 from pierburg_ros.inference.search import key
 from pierburg_ros.plant import Model
 
@@ -91,14 +90,9 @@ class Found:
             return "effects"
         return "re_estimated" if self.written.explanation.size else "description"
 
-    @property
-    def shown(self) -> Fitter:
-        """The simulation that errors are shown of: free, or pulled where an actuator forgets nothing by itself."""
-        return self.written.fitter.pulled(pull_of(self.data.actuator, self.data.period))
-
     def residual(self, fit: Fit) -> Signal:
-        """What a fit leaves over all runs [measured unit], simulated as it is shown."""
-        return self.shown.left_by(fit) * self.data.noise
+        """What a fit leaves over all runs [measured unit] in a replay."""
+        return fit.replayed * self.data.noise
 
     @cached_property
     def errors(self) -> dict[str, Signal]:
@@ -157,22 +151,29 @@ def shares(choice: Choice) -> Shares:
     """How the mismatch divides between re-estimated parameters, each effect beside the others, and what remains.
 
     What effects take together is divided in proportion to what is lost without each of them. A parameter that changed
-    in mid-recording is a re-estimated one. Nothing is divided where the balance alone names an effect.
+    in mid-recording is a re-estimated one. Nothing is divided where the balance alone names an effect. What leaves only
+    noise shows how large it is.
     """
     if any(name.along is not None for name in choice.names.values()):
         return Shares(None, {}, None)
-    start, estimated, left = (excess(fit) for fit in (choice.described, choice.estimated, choice.handed))
+    noise = choice.handed.ratio**2 if adequate(choice.handed) else 1.0
+
+    def above(fit: Fit) -> float:
+        """Mean square [noise^2] above the noise."""
+        return max(fit.ratio**2 - noise, 0.0)
+
+    start, estimated, left = (above(fit) for fit in (choice.described, choice.estimated, choice.handed))
     if start <= MISMATCH:
         return Shares(None, {}, None)
     # a fit of all parameters may end in a minimum above the description
     estimated = min(estimated, start)
-    lost = {effect: max(excess(name.rival) - excess(name.fit), 0.0) for effect, name in choice.names.items()}
+    lost = {effect: max(above(name.rival) - above(name.fit), 0.0) for effect, name in choice.names.items()}
     whole = sum(lost.values())
     together = max(estimated - left, 0.0) / start if whole > 0.0 else 0.0
     effects = {}
     for effect, each in lost.items():
         alone = [fit for fit in choice.fits if fit.explanation.effects == (effect,)]
-        least = min((excess(fit) for fit in alone), default=estimated)
+        least = min((above(fit) for fit in alone), default=estimated)
         beside = together * each / whole if whole > 0.0 else 0.0
         effects[effect] = Share(beside, max(estimated - least, 0.0) / start)
     remains = min(left / start, 1.0)

@@ -20,7 +20,6 @@ from pierburg_ros.inference.explanation import Explanation
 from pierburg_ros.inference.fit import Fit, Fitter, rungs
 from pierburg_ros.inference.intervals import by_run, slopes_at
 from pierburg_ros.inference.polish import polished
-from pierburg_ros.inference.replay import pull_of
 from pierburg_ros.inference.shortlist import balanced
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -82,8 +81,7 @@ class Identified:
         The simulation is that of a replay: it runs free where the actuator forgets its beginning.
         """
         data = self.fitter.data
-        replayed = self.fitter.pulled(pull_of(data.actuator, data.period))
-        return tuple(data.by_run(replayed.residual(self.model) * data.noise * self.per_unit))
+        return tuple(data.by_run(self.fitter.replaying.residual(self.model) * data.noise * self.per_unit))
 
     @property
     def rmse(self) -> float:

@@ -24,7 +24,7 @@ from pierburg_ros.inference.explanation import Explanation, id_of, jumps, withou
 from pierburg_ros.inference.explanation import quantities as quantities_of
 from pierburg_ros.inference.fit import Fit, adequate, excess, rms_of, strongest
 from pierburg_ros.inference.polish import polished
-from pierburg_ros.inference.search import DEEPEST, Search, aliases, begun_again, key
+from pierburg_ros.inference.search import DEEPEST, Search, aliases, begun_again, key, other_way_round
 from pierburg_ros.inference.shortlist import DEPENDENT
 
 REFITTED = 3
@@ -110,12 +110,13 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         explained = bool(enough) and all(jumps(fit.explanation) for fit in enough)
     fitter, nominal = fits[0].fitter, fits[0].fitter.nominal
     described = fitter.fit(Explanation(), nominal.values, 0)
-    whole, everything = list(fits), [described, *fits]
+    whole = [*fits, *other_way_round(fits, pool)]
+    everything = [described, *whole]
     apart = estimated.explanation.drifted
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
-        whole = [min(named_alone(fits, everything), key=lambda fit: fit.chi2)]
+        whole = [min(named_alone(whole, everything), key=lambda fit: fit.chi2)]
     everything += fewest([described, *whole], parameters, search)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)

@@ -21,8 +21,14 @@ class Variant:
         return tuple(f"{self.effect}.{name}" for name in self.free)
 
     def holding(self, name: str, value: float) -> Variant:
-        """The same with one of its free parameters held at a value."""
-        return Variant(self.effect, tuple(each for each in self.free if each != name), (*self.fixed, (name, value)))
+        """The same with one of its parameters held at a value."""
+        own = self.freeing(name)
+        return Variant(self.effect, tuple(each for each in own.free if each != name), (*own.fixed, (name, value)))
+
+    def freeing(self, name: str) -> Variant:
+        """The same with one of its parameters free."""
+        fixed = tuple(each for each in self.fixed if each[0] != name)
+        return Variant(self.effect, self.free if name in self.free else (*self.free, name), fixed)
 
 
 AFTER = "@after"
@@ -33,11 +39,15 @@ WHEN = "@time"
 
 @dataclass(frozen=True)
 class Explanation:
-    """Base parameters that have drifted, one that changed in the middle of the recording, and the effects that act."""
+    """Base parameters that have drifted, one that changed in the middle of the recording, and the effects that act.
+
+    `when` is the moment of the change [s] where it is held.
+    """
 
     drifted: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
     changed: str | None = None
+    when: float | None = None
 
     @property
     def size(self) -> int:
@@ -55,21 +65,33 @@ class Explanation:
         own = tuple(name for variant in self.variants for name in variant.names)
         if self.changed is None:
             return self.drifted + own
-        return (*self.drifted, *own, self.changed, self.changed + AFTER, self.changed + WHEN)
+        moment = (self.changed + WHEN,) if self.when is None else ()
+        return (*self.drifted, *own, self.changed, self.changed + AFTER, *moment)
 
     @property
     def fixed(self) -> dict[str, float]:
-        """The values that the variants fix, by dotted name."""
-        return {f"{v.effect}.{name}": value for v in self.variants for name, value in v.fixed}
+        """The values that are fixed, by dotted name."""
+        moment = {} if self.changed is None or self.when is None else {self.changed + WHEN: self.when}
+        return moment | {f"{v.effect}.{name}": value for v in self.variants for name, value in v.fixed}
 
     def plus(self, variant: Variant) -> Explanation:
         """This explanation with one more effect."""
         return Explanation(self.drifted, (*self.variants, variant), self.changed)
 
+    def formed(self, variant: Variant) -> Explanation:
+        """This explanation with one of its effects acting in this way."""
+        own = tuple(variant if each.effect == variant.effect else each for each in self.variants)
+        return Explanation(self.drifted, own, self.changed)
+
 
 def jumps(explanation: Explanation) -> bool:
     """Whether an effect shows at events, which jump as the values change: the cost then has many local minima."""
     return any(EFFECT[effect].mark is not None for effect in explanation.effects)
+
+
+def moments_of(effect: str) -> list[str]:
+    """The first and the last moment at which an effect acts, if it is dated by any: names of parameters."""
+    return [p.name for p in EFFECT[effect].parameters if p.moment]
 
 
 Quantity = str | Variant

@@ -141,6 +141,11 @@ class Fit:
         return self.fitter.data.half_step**2 / 3.0
 
     @cached_property
+    def replayed(self) -> Signal:
+        """The same as `residual`, by the simulation of a replay: what somebody sees who is handed the model."""
+        return self.fitter.replaying.left_by(self)
+
+    @cached_property
     def repetition(self) -> float:
         """Number of fitted samples that count as one."""
         return repetition(self.fitted)
@@ -175,6 +180,11 @@ class Fitter:
         """The same with another time `constant` [s]."""
         return replace(self, constant=constant)
 
+    @property
+    def replaying(self) -> Fitter:
+        """The same with the pull of a replay."""
+        return self.pulled(pull_of(self.data.actuator, self.data.period))
+
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
         """The pull on each run: until it has settled, as strong as the first of the ladder at least."""
@@ -205,19 +215,19 @@ class Fitter:
 
     def moment(self, model: Model, after: Model) -> float:
         """When [s] `after` had best take over from `model` in the only run: a fit moves a moment by samples."""
-        return float(self.data.runs[0].time[int(np.argmin(self._gained(model, after)))])
+        return float(self.data.runs[0].time[int(np.argmin(self.gained(model, after)))])
 
     def span(self, absent: Model, present: Model) -> tuple[float, float]:
         """From when to when [s] `present` had best act in place of `absent` in the only run; 0: its beginning or end.
 
         The stretch over which the sum of what it gains is largest.
         """
-        gained = np.concatenate([[0.0], self._gained(absent, present)])
+        gained = np.concatenate([[0.0], self.gained(absent, present)])
         end = int(np.argmax(gained - np.minimum.accumulate(gained)))
         start, time = int(np.argmin(gained[: end + 1])), self.data.runs[0].time
         return (float(time[start]) if start else 0.0), (float(time[end]) if end < time.size else 0.0)
 
-    def _gained(self, model: Model, other: Model) -> Signal:
+    def gained(self, model: Model, other: Model) -> Signal:
         """By how much an `other` model leaves less of the fitted samples up to each, shape (samples,)."""
         before, later = (np.square(beyond(self.residual(each), self.data.half_step)) for each in (model, other))
         return np.cumsum(np.where(self.data.train, before - later, 0.0))
@@ -295,6 +305,15 @@ def rungs(actuator: Actuator, period: float) -> tuple[float, ...]:
     return tuple(rung * own for rung in (LADDER if actuator.forgets else LADDER[:1]))
 
 
+def pull_of(actuator: Actuator, period: float) -> float:
+    """Time constant [s] with which a replay is pulled to samples a `period` [s] apart; infinite where none is needed.
+
+    A pendulum or a free rotor driven by a current or a torque forgets nothing. Its simulation drifts from any recording
+    for ever, so it is pulled with the actuator's own time.
+    """
+    return math.inf if actuator.forgets else rungs(actuator, period)[0]
+
+
 def strongest(fitter: Fitter) -> Fitter:
     """The same fitter with the first pull of the ladder."""
     return fitter.pulled(ladder(fitter.data)[0])
@@ -317,8 +336,8 @@ def excess(fit: Fit) -> float:
 
 
 def rms_of(fit: Fit, samples: Flags) -> float:
-    """Root mean square of the residual of some samples in the measured unit; not a number where there are none."""
-    left = fit.residual[samples]
+    """Root mean square that a replay leaves of some samples, in the measured unit; not a number without any."""
+    left = fit.replayed[samples]
     return float(np.sqrt(np.mean(np.square(left)))) * fit.fitter.data.noise if left.size else math.nan
 
 

@@ -11,7 +11,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.data import FIRST, refuse_others, run_of
-from pierburg_ros.inference.fit import beginning, inertia_time, rungs
+from pierburg_ros.inference.fit import beginning, inertia_time, pull_of
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.following import Pull, follow
@@ -19,15 +19,6 @@ from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
-
-
-def pull_of(actuator: Actuator, period: float) -> float:
-    """Time constant [s] with which a replay is pulled to samples a `period` [s] apart; infinite where none is needed.
-
-    A pendulum or a free rotor driven by a current or a torque forgets nothing. Its simulation drifts from any recording
-    for ever, so it is pulled with the actuator's own time.
-    """
-    return math.inf if actuator.forgets else rungs(actuator, period)[0]
 
 
 def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:

@@ -6,15 +6,15 @@ import itertools
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import attrgetter
 
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
-from pierburg_ros.inference.coordinates import in_order
-from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, without
+from pierburg_ros.inference.coordinates import in_order, without_effects
+from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, moments_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
@@ -22,9 +22,9 @@ from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
 
-TRIED = 8
-"""Effects whose promises are fitted on top of an explanation, half as many on top of one with effects. Work: each
-costs two short fits; not varied."""
+TRIED = 4
+"""Effects whose promises are fitted on top of an explanation with effects. Work: each costs two short fits; not
+varied."""
 PROMISING = 0.2
 """Part of the share that the best promises to take, below which a promise is not fitted. Measured: the effect
 that explains most promised 0.48 of the best at least (n = 15 recordings).
@@ -45,8 +45,8 @@ WORTH_ADDING = 0.9
 """Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
 for another effect to be added. Chosen: a tenth is worth the work; not varied."""
 GROWN = 4.0
-"""Mean square above the noise, in that of the best explanation of a size, up to which another one is grown. Chosen:
-what leaves twice the error of the best hardly holds the effect that explains most; not varied."""
+"""Mean square, in that of the best explanation of a size, up to which another one is fitted on and grown. Chosen: what
+leaves twice the error of the best hardly holds the effect that explains most; not varied."""
 DEEPEST = 3
 """Most effects in an explanation. Given: supports of up to three effects."""
 
@@ -80,7 +80,7 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
             for fit in leading:
                 search.tell(f"what could be added to {label(fit)}")
                 promised = promises(fit, search.balance, search.candidates, search.pool)
-                grown += fits_of(fit, best_of_each(promised, TRIED if depth == 1 else TRIED // 2), search)
+                grown += fits_of(fit, best_of_each(promised, TRIED if depth > 1 else len(EFFECT)), search)
                 grown += changed(fit, search) if depth == 1 else []
             new = [fit for fit in best_of_support(grown) if key(fit) not in found]
             if not new:
@@ -97,9 +97,9 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
 
 
 def nearest(fits: Sequence[Fit]) -> list[Fit]:
-    """The fits that leave at most `GROWN` times the error of the best, best first."""
+    """The fits that leave at most `GROWN` times the mean square of the best, best first."""
     ordered = sorted(fits, key=lambda fit: fit.chi2)
-    return [fit for fit in ordered if excess(fit) <= GROWN * excess(ordered[0])]
+    return [fit for fit in ordered if fit.chi2 <= GROWN * ordered[0].chi2]
 
 
 def without_one(fit: Fit, pool: Executor) -> list[Fit]:
@@ -125,7 +125,7 @@ def aliases(fit: Fit, search: Search) -> list[Fit]:
     search.tell(f"what equals the drifts beside {label(fit)}")
     few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
     promised = promises(fit, search.balance, few, search.pool)
-    most = best_of_each(promised, TRIED) if adequate(fit) else []
+    most = best_of_each(promised, len(EFFECT)) if adequate(fit) else []
     return best_of_support(fits_of(fit, [*most, *(p for p in promised if p.own < ALIAS and p not in most)], search))
 
 
@@ -181,36 +181,70 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
 
 
 def timed(fit: Fit, variant: Variant) -> Fit:
-    """A short fit with the moments of a dated effect moved to where it gains most, in a single recording."""
-    effect, fitter = EFFECT[variant.effect], fit.fitter
-    moments = [f"{effect.id}.{p.name}" for p in effect.parameters if p.moment and p.name in variant.free]
-    if len(moments) != 2 or len(fitter.data.runs) > 1:
+    """A short fit with the moments of a dated effect moved to where it gains most, in a single recording.
+
+    One that is best at an end of the recording is held there.
+    """
+    fitter, moments = fit.fitter, moments_of(variant.effect)
+    if not {*moments} & {*variant.free} or len(fitter.data.runs) > 1:
         return fit
     for _ in range(MOVES):
-        always = fit.model.with_values(dict.fromkeys(moments, 0.0))
-        never = always.with_values({f"{effect.id}.{name}": 0.0 for name in effect.strength})
-        values = {**fit.values, **dict(zip(moments, fitter.span(never, always), strict=True))}
-        moved = fitter.fit(fit.explanation, values, BRIEF)
+        always = fit.model.with_values({f"{variant.effect}.{name}": 0.0 for name in moments})
+        span, own = fitter.span(without_effects(always, [variant.effect]), always), variant
+        for name, moment in zip(moments, span, strict=True):
+            own = own if moment else own.holding(name, 0.0)
+        values = {f"{variant.effect}.{name}": moment for name, moment in zip(moments, span, strict=True)}
+        moved = fitter.fit(fit.explanation.formed(own), {**fit.values, **values}, BRIEF)
         if moved.chi2 >= fit.chi2:
             break
         fit = moved
     return fit
 
 
+def other_way_round(fits: Sequence[Fit], pool: Executor) -> list[Fit]:
+    """Fits whose effect acts up to a moment, or from one on, with it on the rest of the recording, the other way.
+
+    Beside all drifts both are equal, for a constant part is free; beside fewer they are not.
+    """
+
+    def turned(pair: tuple[Fit, Variant]) -> Fit:
+        (fit, variant), effect = pair, EFFECT[pair[1].effect]
+        own, values = variant, dict(fit.values)
+        for name, other in itertools.permutations(moments_of(effect.id)):
+            values[f"{effect.id}.{name}"] = moment = fit.values[f"{effect.id}.{other}"]
+            own = own.freeing(name) if moment else own.holding(name, 0.0)
+        for name in effect.strength:
+            values[f"{effect.id}.{name}"] *= -1.0
+        return fit.fitter.fit(fit.explanation.formed(own), values)
+
+    pairs = [(fit, variant) for fit in fits for variant in fit.explanation.variants]
+    return list(pool.map(turned, (pair for pair in pairs if len(moments_in(*pair)) == 1)))
+
+
+def moments_in(fit: Fit, variant: Variant) -> list[str]:
+    """Those of them that a fit moves, and that are not at an end of the recording."""
+    return [
+        name for name in moments_of(variant.effect) if name in variant.free and fit.values[f"{variant.effect}.{name}"]
+    ]
+
+
 def changed(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit."""
+    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit.
+
+    A moment is held while values are fitted, and then moved to where it gains most: a cost has no slope over it.
+    """
     fitter = fit.fitter
 
     def begun(change: Change) -> Fit:
-        return fitter.fit(change.explanation, change.values, LOOKED_AT)
+        own = change.explanation
+        return fitter.fit(replace(own, when=change.values[f"{own.changed}{WHEN}"]), change.values, LOOKED_AT)
 
     def one(found: Fit) -> Fit:
-        found = fitter.fit(found.explanation, found.values, BRIEF)
         for _ in range(MOVES):
             assert found.after is not None
-            when = {f"{found.explanation.changed}{WHEN}": fitter.moment(found.model, found.after)}
-            found = fitter.fit(found.explanation, {**found.values, **when}, BRIEF)
-        return found
+            moved = replace(found.explanation, when=fitter.moment(found.model, found.after))
+            found = fitter.fit(moved, found.values, BRIEF)
+        return fitter.fit(replace(found.explanation, when=None), found.values, 0)
 
     every = search.pool.map(begun, changes(fit, search.balance, free_parameters(fitter.nominal)))
     return list(search.pool.map(one, sorted(every, key=lambda each: each.chi2)[:STARTS]))

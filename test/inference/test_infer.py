@@ -10,6 +10,7 @@ from pierburg_ros.actuators import read_actuator
 from pierburg_ros.inference.choice import Choice
 from pierburg_ros.inference.fit import rms_of
 from pierburg_ros.inference.infer import infer
+from pierburg_ros.inference.intervals import intervals
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import Channel, Recording
 
@@ -75,6 +76,18 @@ def test_what_misses_blocks_that_were_held_out_is_not_called_explained():
     choice = infer([replace(described, measured=described.measured + np.where(within, 0.03, 0.0))], NOMINAL).choice
     assert choice.verdict == "unexplained"
     assert np.any(choice.chosen.fitter.data.train[within])
+
+
+def test_a_load_from_a_moment_on_is_told_from_no_change_of_the_preload_then():
+    hidden = {"external_load.torque": 0.03, "external_load.start": 9.1}
+    choice = infer([recording(hidden)], NOMINAL).choice
+    either = {"external_load", "spring_preload"}
+    assert choice.explained
+    assert choice.chosen.size == 1
+    assert {*choice.ties} | {*choice.alternatives} == either
+    moment = "external_load.start" if named(choice) else "spring_preload@time"
+    low, high = intervals(choice.handed)[moment].ci95
+    assert low <= 9.1 <= high
 
 
 def test_two_effects_are_named():

@@ -34,7 +34,7 @@ def switched_off(found: Found) -> list[tuple[Tried, Signal]]:
     for effect in own.explanation.effects:
         model = without_effects(own.model, [effect])
         after = own.after and without_effects(own.after, [effect])
-        residual = found.shown.residual(model, after, own.when) * found.data.noise
+        residual = own.fitter.replaying.residual(model, after, own.when) * found.data.noise
         key = f"{OFF}{effect}"
         rows.append((tried(found, residual, key, own.size - 1, "rejected", math.nan, key), residual))
     return rows

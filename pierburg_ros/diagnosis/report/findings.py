@@ -238,11 +238,8 @@ def changes(found: Found) -> list[Change]:
         return []
     values, known = own.values, found.intervals.get(name + WHEN)
     ends = known.ci95 if known else None
-    return [
-        Change(
-            parameter=name, time=values[name + WHEN], time_ci95=ends, before=values[name], after=values[name + AFTER]
-        )
-    ]
+    time = sum(ends) / 2.0 if ends else values[name + WHEN]
+    return [Change(parameter=name, time=time, time_ci95=ends, before=values[name], after=values[name + AFTER])]
 
 
 def fit_quality(found: Found) -> FitQuality:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from pierburg_ros.inference.balance import balance_of
 from pierburg_ros.inference.data import all_fitted
 from pierburg_ros.inference.explanation import Explanation
-from pierburg_ros.inference.fit import Fitter, rms_of, strongest
+from pierburg_ros.inference.fit import Fitter, pull_of, rms_of, strongest
 from pierburg_ros.inference.least_squares import BRIEF
-from pierburg_ros.inference.replay import parts_of, pull_of
+from pierburg_ros.inference.replay import parts_of
 from pierburg_ros.inference.search import free_parameters
 from pierburg_ros.inference.shortlist import independent
 from pierburg_ros.plant import Model
