@@ -24,15 +24,10 @@ def along(motion: Motion, values: Mapping[str, float]) -> Signal:
 
 def risen(motion: Motion, values: Mapping[str, float]) -> Signal:
     """Temperature rise [K] along a whole motion, by the power that heats the winding at its own resistance then."""
-    from scipy.signal import lfilter  # takes long to load, and only a balance needs it
-
     passing, capacity = (values[f"thermal_resistance.{name}"] for name in ("thermal_resistance", "heat_capacity"))
     cold = values["armature_resistance"]
     share = motion.step / (passing * capacity + motion.step)
-    voltage_squared, rise = np.square(motion.current(values) * cold), np.zeros(motion.time.size)
-    for _ in range(3):  # the warmer, the less it heats: two more turns bring it to rounding of a measured motion
-        rise = lfilter([share * passing], [1.0, share - 1.0], voltage_squared / (cold * (1.0 + COPPER * rise)))
-    return np.asarray(rise)
+    return np.asarray(warmed(np.square(motion.current(values)) * cold * passing, share))
 
 
 EFFECT = Effect(
@@ -85,6 +80,15 @@ EFFECT = Effect(
     linear=True,
     drives=("voltage",),
 )
+
+
+@kernel
+def warmed(final, share):
+    """Temperature rise [K] that nears the `final` one of a cold winding by a `share` each sample, shape (samples,)."""
+    rise = np.zeros(final.size)
+    for place in range(1, final.size):
+        rise[place] = rise[place - 1] + share * (final[place] / (1.0 + COPPER * rise[place - 1]) - rise[place - 1])
+    return rise
 
 
 @kernel

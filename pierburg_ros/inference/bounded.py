@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import lsq_linear, nnls
 
 from pierburg_ros.arrays import Signal
 
@@ -37,6 +36,8 @@ def bounded(triangle: Signal, target: Signal, low: Signal, high: Signal) -> Sign
     An upper bound is a slack that is not negative (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter
     23).
     """
+    from scipy.optimize import lsq_linear, nnls  # takes long to load, and only an audit or a balance needs it
+
     size, ends = low.size, np.flatnonzero(np.isfinite(high))
     slack = np.zeros((ends.size, size + ends.size))
     slack[np.arange(ends.size), ends] = slack[np.arange(ends.size), size + np.arange(ends.size)] = SLACK_WEIGHT

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
+from scipy.ndimage import correlate1d
 
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
@@ -72,9 +72,10 @@ class Filtered:
 
     def smooth(self, values: Signal, derivative: int = 0) -> Signal:
         """`values` or a derivative of them behind the filter."""
-        return np.asarray(
-            savgol_filter(values, self.window, 2, deriv=derivative, mode="nearest") / self.step**derivative
-        )
+        half = self.window // 2
+        parabola = np.linalg.pinv(np.vander(np.arange(-half, half + 1), 3, increasing=True))
+        weights = math.factorial(derivative) / self.step**derivative * parabola[derivative]
+        return np.asarray(correlate1d(values, weights, mode="nearest"))
 
     @cached_property
     def moving(self) -> Flags:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.signal import savgol_filter
 from support.recordings import NOMINAL, recording, recording_in_closed_loop
 
 from pierburg_ros.effects.static_friction import at_rests
@@ -50,6 +51,13 @@ def test_the_residual_has_the_unit_of_the_command(drifted: Balance):
     per_duty = drifted.residual(lost, ()) / drifted.missing(lost, ())
     torque = lost["gear_ratio"] * lost["torque_constant"] / lost["armature_resistance"] * 12.0
     assert 1.0 / per_duty == pytest.approx(np.full(per_duty.size, torque))
+
+
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+def test_the_filter_is_that_of_savitzky_and_golay(drifted: Balance, derivative):
+    whole = drifted.motions[0].whole
+    expected = savgol_filter(whole.raw, whole.window, 2, derivative, whole.step, mode="nearest")
+    np.testing.assert_allclose(whole.smooth(whole.raw, derivative), expected, atol=1e-9 * np.ptp(expected))
 
 
 def test_a_motion_is_only_where_the_shaft_moves_off_the_stops(drifted: Balance):
