@@ -31,8 +31,6 @@ that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
-LOOKED_AT = 2
-"""Iterations after which the changes of each parameter are compared. Work: where they start says too little."""
 MOVES = 2
 """Times that the moments of a change, or of a load, are read off a fit, and the fit made again. Work: the second moves
 them by samples."""
@@ -229,25 +227,23 @@ def moments_in(fit: Fit, variant: Variant) -> list[str]:
 
 
 def changed(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit.
+    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit: those of the best.
 
     A moment is held while values are fitted, and then moved to where it gains most: a cost has no slope over it.
     """
     fitter = fit.fitter
 
-    def begun(change: Change) -> Fit:
-        own = change.explanation
-        return fitter.fit(replace(own, when=change.values[f"{own.changed}{WHEN}"]), change.values, LOOKED_AT)
-
-    def one(found: Fit) -> Fit:
+    def one(change: Change) -> Fit:
+        own, values = change.explanation, change.values
+        when = values[f"{own.changed}{WHEN}"]
         for _ in range(MOVES):
+            found = fitter.fit(replace(own, when=when), values, BRIEF)
             assert found.after is not None
-            moved = replace(found.explanation, when=fitter.moment(found.model, found.after))
-            found = fitter.fit(moved, found.values, BRIEF)
-        return fitter.fit(replace(found.explanation, when=None), found.values, 0)
+            values, when = found.values, fitter.moment(found.model, found.after)
+        return fitter.fit(own, {**values, f"{own.changed}{WHEN}": when}, 0)
 
-    every = search.pool.map(begun, changes(fit, search.balance, free_parameters(fitter.nominal)))
-    return list(search.pool.map(one, sorted(every, key=lambda each: each.chi2)[:STARTS]))
+    every = search.pool.map(one, changes(fit, search.balance, free_parameters(fitter.nominal)))
+    return sorted(every, key=lambda each: each.chi2)[:STARTS]
 
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
