@@ -120,7 +120,7 @@ class Change(Part):
 
     parameter: str
     time: float
-    """Moment of the change [s], from the first sample: the middle of `time_ci95`, where that is known."""
+    """Moment of the change [s], from the first sample: the likeliest in `time_ci95`, where that is known."""
     time_ci95: Interval = None
     """Its 95 % confidence interval [s]: as long as the shaft stands still, a change may come at any moment."""
     before: float

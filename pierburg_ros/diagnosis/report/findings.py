@@ -238,7 +238,8 @@ def changes(found: Found) -> list[Change]:
         return []
     values, known = own.values, found.intervals.get(name + WHEN)
     ends = known.ci95 if known else None
-    time = sum(ends) / 2.0 if ends else values[name + WHEN]
+    low, high = ends or (0.0, found.data.duration)
+    time = min(max(values[name + WHEN], low), high)
     return [Change(parameter=name, time=time, time_ci95=ends, before=values[name], after=values[name + AFTER])]
 
 
