@@ -14,6 +14,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
 from pierburg_ros.inference.coordinates import in_order, without_effects
+from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, moments_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.least_squares import BRIEF
@@ -64,12 +65,15 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
     """The explanations that lead, fitted with the weakest pull of the ladder, best first.
 
     From the best of each size the next size is grown, until one leaves only noise or one more effect gains little.
-    What is no longer needed beside what came later is dropped again.
+    What is no longer needed beside what came later is dropped again. They grow with the strongest pull with which the
+    re-estimated model leaves more than may be noise.
     """
     search.tell("re-estimated parameters")
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
-    leading = [base]
-    found, ended = {key(base)}, followed([base], search.pool)
+    ended = followed([base], search.pool)
+    while base.ratio < EXPLAINED and (weaker := weaker_than(base)):
+        base = led(base, weaker[:1])
+    fitter, leading, found = base.fitter, [base], {key(base)}
     with fitter.effort.interruptible():
         for depth in range(1, DEEPEST + 1):
             if any(map(adequate, ended)) or fitter.effort.over:
@@ -248,8 +252,13 @@ def changed(fit: Fit, search: Search) -> list[Fit]:
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
     """The same explanations fitted on, pulled ever more weakly, best first."""
-    several = pool.map(lambda fit: led(fit, ladder(fit.fitter.data)[1:]), fits)
+    several = pool.map(lambda fit: led(fit, weaker_than(fit)), fits)
     return sorted(several, key=lambda fit: fit.chi2)
+
+
+def weaker_than(fit: Fit) -> list[float]:
+    """The time constants [s] of the pull that come after that of a fit."""
+    return [constant for constant in ladder(fit.fitter.data) if constant > fit.fitter.constant]
 
 
 def led(fit: Fit, constants: Iterable[float]) -> Fit:

@@ -32,7 +32,8 @@ from pierburg_ros.inference.least_squares import FULL, beside, jacobian, minimis
 from pierburg_ros.plant import Model
 
 SCREENED = 4
-"""Starts of one effect that the balance hands on. Work: each costs two simulations; not varied."""
+"""Starts of one effect that the balance hands on, besides those that it cannot see. Work: each costs two simulations;
+not varied."""
 SETTLING = 8
 """Iterations of such a fit. Work: the simulation fits on."""
 EQUAL = 0.01
@@ -212,7 +213,10 @@ def read(
         side, project, left = sides[declared.dated]
         if declared.along is not None and declared.mark is None:
             screened = [_screened(side, values, variant, group, project, left) for group in several]
-            several = [group for _, group in sorted(screened, key=lambda each: -each[0])[:SCREENED]]
+            screened.sort(key=lambda each: -each.fall)
+            # what a balance could not see is simulated, but for the many spans in which something may act
+            unseen = [] if declared.dated else [each for each in screened[SCREENED:] if not each.seen]
+            several = [each.starts for each in (*screened[:SCREENED], *unseen)]
             several = [_dated(side, values, variant, group, project, left) for group in several]
         for group in several:
             begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
@@ -267,6 +271,18 @@ def sloped(
     return left, jacobian(residual, point, left, *coordinates.bounds, coordinates.steps)
 
 
+@dataclass(frozen=True)
+class Screened:
+    """What starts that differ in phase alone take of the balance's squared error, and they with their strength.
+
+    `seen`: with the strength that they declare they would be evident in the balance.
+    """
+
+    fall: float
+    starts: list[Start]
+    seen: bool
+
+
 def _screened(
     balance: Balance,
     values: Mapping[str, float],
@@ -274,14 +290,15 @@ def _screened(
     group: Sequence[Start],
     basis: Signal,
     left: Signal,
-) -> tuple[float, list[Start]]:
-    """What starts take of the balance's squared error that differ in phase alone, and they with their strength."""
+) -> Screened:
+    """What starts take of the balance's squared error that differ in phase alone."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
     columns = beside(columns, basis)
     scale, fall = _step(columns, left, _limits(variant.effect, group))
+    noise = float(left @ left) / left.size
+    seen = float(np.min(np.sum(np.square(columns), axis=0))) > SIGNIFICANT * noise
     # what takes no more than chance gives tells nothing of its strength
-    told = fall * left.size > float(left @ left)
-    return fall, _scaled(variant.effect, group, scale) if told else list(group)
+    return Screened(fall, _scaled(variant.effect, group, scale) if seen and fall > noise else list(group), seen)
 
 
 def _dated(
@@ -300,9 +317,9 @@ def _dated(
         step *= 0.5
         for name in moments:
             for by in (-step, step):
-                moved = [{**start, name: start[name] + by if start[name] else 0.0} for start in best[1]]
-                best = max(best, _screened(balance, values, variant, moved, basis, left), key=lambda each: each[0])
-    return best[1]
+                moved = [{**start, name: start[name] + by if start[name] else 0.0} for start in best.starts]
+                best = max(best, _screened(balance, values, variant, moved, basis, left), key=lambda each: each.fall)
+    return best.starts
 
 
 DATES = 30
