@@ -199,7 +199,9 @@ class Score:
         """
         first = min(fits, key=self)
         equal = [fit for fit in fits if self.alike(fit, first) and fit.size <= first.size]
-        return min(equal, key=lambda fit: (len(key(fit)), len({*fit.explanation.drifted} - {*apart}), self(fit)))
+        return min(
+            equal, key=lambda fit: (len(fit.explanation.effects), len({*fit.explanation.drifted} - {*apart}), self(fit))
+        )
 
     def alike(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit makes the recordings as likely as the best, but for what is a tie."""

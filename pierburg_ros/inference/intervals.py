@@ -20,7 +20,7 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import ABOVE, Coordinates, without_effects
 from pierburg_ros.inference.covariance import RANK, Spread, spread
 from pierburg_ros.inference.explanation import WHEN, Explanation, moments_of, without
-from pierburg_ros.inference.fit import Fit
+from pierburg_ros.inference.fit import Fit, strongest
 from pierburg_ros.inference.slopes import sharp
 
 HALF_KNOWN = 0.5
@@ -89,7 +89,9 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     for name in own.names:
         place, value = whole.names.index(name), coordinates.values(point)[name]
         at_bound = bool(on_bound[place])
-        ends = moment_ends(fit, name) or _ends(fit, coordinates, point, name, known)
+        ends = _ends(fit, coordinates, point, name, known)
+        flat = moment_ends(fit, name) or ends
+        ends = min(ends[0], flat[0]), max(ends[1], flat[1])
         ci95 = None if at_bound or not told[place] else ends
         near = ci95 is not None and max(value - ci95[0], ci95[1] - value) <= HALF_KNOWN * abs(value)
         partners = tuple(whole.names[other] for other in together(known.matrix, place))
@@ -100,19 +102,20 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
 def moment_ends(fit: Fit, name: str) -> tuple[float, float] | None:
     """The first and the last moment [s] that are as likely as 95 % allow; None for what is no moment of one recording.
 
-    A cost is flat over a moment while the shaft does not show it, at rest on a stop or where samples are held out.
+    A cost is flat over a moment while the shaft does not show it, at rest on a stop or where samples are held out. Both
+    models are simulated whole, with the strongest pull, which forgets soonest what was before.
     """
     effect, _, parameter = name.partition(".")
     if len(fit.fitter.data.runs) > 1:
         return None
-    time = fit.fitter.data.runs[0].time
+    fitter, time = strongest(fit.fitter), fit.fitter.data.runs[0].time
     if name.endswith(WHEN):
         assert fit.after is not None
-        gained, where = fit.fitter.gained(fit.model, fit.after), np.ones(time.size, dtype=bool)
+        gained, where = fitter.gained(fit.model, fit.after), np.ones(time.size, dtype=bool)
     elif parameter and (moments := moments_of(effect)) and parameter in moments:
         start, end = (fit.values[f"{effect}.{each}"] for each in moments)
         present = fit.model.with_values({f"{effect}.{each}": 0.0 for each in moments})
-        gained = fit.fitter.gained(without_effects(fit.model, [effect]), present)
+        gained = fitter.gained(without_effects(fit.model, [effect]), present)
         is_start = parameter == moments[0]
         gained, where = (gained, time < (end or math.inf)) if is_start else (-gained, time >= start)
     else:

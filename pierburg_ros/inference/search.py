@@ -9,6 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
+import numpy as np
+
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
@@ -17,6 +19,7 @@ from pierburg_ros.inference.coordinates import in_order, without_effects
 from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, moments_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
+from pierburg_ros.inference.intervals import moment_ends
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
 from pierburg_ros.plant import Model
@@ -264,7 +267,23 @@ def weaker_than(fit: Fit) -> list[float]:
 def led(fit: Fit, constants: Iterable[float]) -> Fit:
     """The same explanation fitted with each of the `constants` [s] of the pull, one after the other."""
     for constant in constants:
-        fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
+        fit = dated_again(fit.fitter.pulled(constant).fit(fit.explanation, fit.values))
+    return fit
+
+
+def dated_again(fit: Fit) -> Fit:
+    """A fit that leaves an error from the best of the moments that its samples hardly tell apart, if it has any.
+
+    While samples are held out, or a shaft rests, a cost is flat over a moment, but where a pull remembers what it
+    started. Moments are tried as far apart as the actuator's own time.
+    """
+    fitter = fit.fitter
+    for name in () if adequate(fit) else fit.explanation.names:
+        first, last = moment_ends(fit, name) or (0.0, 0.0)
+        moments = np.arange(first, last, fitter.data.scales.time).tolist()
+        several = [fitter.fit(fit.explanation, {**fit.values, name: moment}, 0) for moment in moments]
+        best = min((fit, *several), key=lambda each: each.chi2)
+        fit = fit if best is fit else fitter.fit(fit.explanation, best.values)
     return fit
 
 
