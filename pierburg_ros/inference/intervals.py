@@ -89,10 +89,11 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     for name in own.names:
         place, value = whole.names.index(name), coordinates.values(point)[name]
         at_bound = bool(on_bound[place])
-        ends = _ends(fit, coordinates, point, name, known)
-        flat = moment_ends(fit, name) or ends
-        ends = min(ends[0], flat[0]), max(ends[1], flat[1])
-        ci95 = None if at_bound or not told[place] else ends
+        several = [_ends(fit, coordinates, point, name, known)] if told[place] else []
+        several += [flat] if (flat := moment_ends(fit, name)) else []
+        ci95 = None
+        if several and not at_bound:
+            ci95 = min(low for low, _ in several), max(high for _, high in several)
         near = ci95 is not None and max(value - ci95[0], ci95[1] - value) <= HALF_KNOWN * abs(value)
         partners = tuple(whole.names[other] for other in together(known.matrix, place))
         found[name] = Interval(value, ci95, near, at_bound, partners)
@@ -119,6 +120,8 @@ def moment_ends(fit: Fit, name: str) -> tuple[float, float] | None:
         is_start = parameter == moments[0]
         gained, where = (gained, time < (end or math.inf)) if is_start else (-gained, time >= start)
     else:
+        return None
+    if not where.any():
         return None
     allowed = np.min(gained[where]) + TWO_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
     possible = np.flatnonzero(where & (gained <= allowed))

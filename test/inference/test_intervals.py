@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from support.recordings import NOMINAL, PIERBURG, recording, recording_in_closed_loop
+from support.recordings import NOISE, NOMINAL, PIERBURG, changing, recording, recording_in_closed_loop
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.covariance import spread
 from pierburg_ros.inference.data import data_of
-from pierburg_ros.inference.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation, Variant
 from pierburg_ros.inference.fit import Fit, Fitter, ladder
 from pierburg_ros.inference.intervals import Interval, intervals, together
-from pierburg_ros.plant import Model
+from pierburg_ros.plant import Inputs, Model
+from pierburg_ros.recording import Channel
 
 WIDE = 1e6
 """A deviation before the recording of which nothing is left beside it."""
@@ -109,6 +110,23 @@ def test_intervals_hold_the_true_values_beside_an_effect_in_closed_loop():
         recording_in_closed_loop, {"input_delay.delay": 0.012}, ("spring_preload",), "input_delay", seeds=40
     )
     assert min(found.values()) >= 34 / 40
+
+
+def test_a_moment_is_known_to_where_the_shaft_does_not_show_it():
+    """A winding that warms up while the shaft lies on its stop without current."""
+    whole, when = recording({}, duration=24.0), 10.7
+    duty = np.where((whole.time > 8.0) & (whole.time < 13.0), 0.0, whole.command.values)
+    after = NOMINAL.with_values({"armature_resistance": 5.0})
+    volts = changing(NOMINAL, after, when, Inputs(whole.time, duty), whole.time)
+    measured = volts + NOISE * np.random.default_rng(1).standard_normal(volts.size)
+    data = data_of([replace(whole, measured=measured, command=Channel(whole.time, duty))], NOMINAL)
+    fitter = Fitter(data, NOMINAL, ladder(data)[-1])
+    moment = f"armature_resistance{WHEN}"
+    start = {**NOMINAL.values, f"armature_resistance{AFTER}": 5.0, moment: 9.5}
+    found = intervals(fitter.fit(Explanation(changed="armature_resistance"), start))
+    low, high = found[moment].ci95
+    assert 8.0 < low < when < high < 13.5
+    assert high - low > 4.0
 
 
 def test_what_only_a_ratio_shows_is_known_as_the_held_one_is():
