@@ -378,15 +378,20 @@ def sure(fits: Sequence[Fit]) -> dict[str, Name]:
     found = surest(judged(fits))
     named = {name: each for name, each in found.items() if each.confidence >= least(name)}
     doubted = sorted(name for name in found.keys() - named.keys() if name in EFFECT and not EFFECT[name].dated)
-    pairs = list(itertools.combinations(doubted, 2))
-    together = [max(name_of(frozenset(p), fit, fits).confidence for fit in fits if key(fit) & {*p}) for p in pairs]
-    if max(together, default=0.0) >= NAMED_EITHER:
-        pair = {*pairs[int(np.argmax(together))]}
-        several = sorted((fit for fit in fits if len(key(fit) & pair) == 1), key=lambda fit: fit.chi2)
-        fit, rival = several[0], next(each for each in several if key(each) & pair != key(several[0]) & pair)
-        (name,), (other,) = key(fit) & pair, key(rival) & pair
-        named[name] = Name(max(together) * better(rival, fit), fit, rival, instead=other)
-    return named
+    pairs = [one_of_two(frozenset(pair), fits) for pair in itertools.combinations(doubted, 2)]
+    together, name, each = max(filter(None, pairs), key=lambda pair: pair[0], default=(0.0, "", None))
+    return named | {name: each} if each is not None and together >= NAMED_EITHER else named
+
+
+def one_of_two(pair: frozenset[str], fits: Sequence[Fit]) -> tuple[float, str, Name] | None:
+    """How sure it is that one of two effects acts, and the likelier; None where no fit has one without the other."""
+    several = sorted((fit for fit in fits if len(key(fit) & pair) == 1), key=lambda fit: fit.chi2)
+    rivals = [fit for fit in several if key(fit) & pair != key(several[0]) & pair]
+    if not rivals:
+        return None
+    together = max(name_of(pair, fit, fits).confidence for fit in several)
+    (name,), (other,) = key(several[0]) & pair, key(rivals[0]) & pair
+    return together, name, Name(together * better(rivals[0], several[0]), several[0], rivals[0], instead=other)
 
 
 def either(names: Mapping[str, Name]) -> dict[str, tuple[tuple[str, ...], ...]]:
