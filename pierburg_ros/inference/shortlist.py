@@ -25,15 +25,14 @@ from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.evidence import SIGNIFICANT
-from pierburg_ros.inference.explanation import Explanation, Variant
+from pierburg_ros.inference.explanation import Explanation, Variant, moments_of
 from pierburg_ros.inference.fit import Fit, Fitter
 from pierburg_ros.inference.intervals import slopes_at
 from pierburg_ros.inference.least_squares import FULL, beside, jacobian, minimise
 from pierburg_ros.plant import Model
 
 SCREENED = 4
-"""Starts of one effect that the balance hands on, besides those that it cannot see. Work: each costs two simulations;
-not varied."""
+"""Starts of one effect that the balance hands on, if it can see any. Work: each costs two simulations; not varied."""
 SETTLING = 8
 """Iterations of such a fit. Work: the simulation fits on."""
 EQUAL = 0.01
@@ -214,9 +213,10 @@ def read(
         if declared.along is not None and declared.mark is None:
             screened = [_screened(side, values, variant, group, project, left) for group in several]
             screened.sort(key=lambda each: -each.fall)
-            # what a balance could not see is simulated, but for the many spans in which something may act
-            unseen = [] if declared.dated else [each for each in screened[SCREENED:] if not each.seen]
-            several = [each.starts for each in (*screened[:SCREENED], *unseen)]
+            # an effect that a balance could not see is simulated, but for the many spans of time in which it may act
+            spans = {*moments_of(variant.effect)} & {*variant.free} or (acting and declared.dated)
+            kept = SCREENED if spans or any(each.seen for each in screened) else len(screened)
+            several = [each.starts for each in screened[:kept]]
             several = [_dated(side, values, variant, group, project, left) for group in several]
         for group in several:
             begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
