@@ -107,17 +107,7 @@ ROOMS = {
         "polish": {"covariance", "fit", "intervals"},
         "shortlist": {"balance", "coordinates", "data", "evidence", "explanation", "fit", "intervals", "least_squares"},
         "changes": {"balance", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
-        "search": {
-            "balance",
-            "changes",
-            "coordinates",
-            "evidence",
-            "explanation",
-            "fit",
-            "intervals",
-            "least_squares",
-            "shortlist",
-        },
+        "search": {"balance", "changes", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
         "choice": {"evidence", "explanation", "fit", "polish", "search", "shortlist"},
     },
     "nodes": {

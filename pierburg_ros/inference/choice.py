@@ -22,7 +22,7 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, TIED, certainty, probability
 from pierburg_ros.inference.explanation import Explanation, id_of, jumps, without
 from pierburg_ros.inference.explanation import quantities as quantities_of
-from pierburg_ros.inference.fit import Fit, adequate, rms_of, strongest
+from pierburg_ros.inference.fit import Fit, adequate, excess, rms_of, strongest
 from pierburg_ros.inference.polish import polished
 from pierburg_ros.inference.search import DEEPEST, Search, aliases, begun_again, key, other_way_round
 from pierburg_ros.inference.shortlist import DEPENDENT
@@ -38,10 +38,6 @@ Measured: beside physics that no effect describes wrong effects had 0.34 at most
 NAMED_BY_TIME = 0.75
 """The same of what acts at times of its own, which may follow any physics in time. Measured: a load over time had 0.64
 at most where there was none (n = 16)."""
-NAMED_EITHER = 0.75
-"""Least confidence that one of two effects acts at which the likelier of them is named, the other as its tie. As for
-`NAMED_BY_TIME`: two follow more than one does. Measured: 0.2 at most where there was none (n = 3), 0.96 where one of
-two frictions that fit alike was hidden."""
 
 
 @dataclass(frozen=True)
@@ -50,15 +46,13 @@ class Name:
 
     It is the probability that the fit is better, times the share of the rival's error above the noise that it takes:
     where something remains that no effect describes, any effect takes a part of it. `along` is that share of the error
-    of the balance, where the balance alone names the effect. `instead` is the effect that may act in its place, where
-    only one of both is sure.
+    of the balance, where the balance alone names the effect.
     """
 
     confidence: float
     fit: Fit
     rival: Fit
     along: float | None = None
-    instead: str | None = None
 
 
 @dataclass(frozen=True)
@@ -118,13 +112,11 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
     described = fitter.fit(Explanation(), nominal.values, 0)
     whole = [*fits, *other_way_round(fits, pool)]
     everything = [described, *whole]
-    apart, named = estimated.explanation.drifted, dict[str, Name]()
+    apart = estimated.explanation.drifted
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
-        named = sure(everything)
-        first = min(nameable(whole, named), key=lambda fit: fit.chi2)
-        whole = [first]
+        whole = [min(named_alone(whole, everything), key=lambda fit: fit.chi2)]
     everything += fewest([described, *whole], parameters, search)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)
@@ -132,12 +124,12 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         alike = list(aliases(next(fit for fit in fits if key(fit) == key(best)), search))
         alike += fewest([described, *alike], parameters, search)
         everything += alike
-        able += alike if explained else nameable(alike, sure(everything) | named)
+        able += alike if explained else named_alone(alike, everything)
         best = Score.of(able).best(able, apart)
     best, dropped = needed(begun_again(best, search), pool)
     everything += [*dropped, *in_place(best, whole, parameters, search)]
     score = Score.of([best, *everything])
-    own, others = names(best, everything, explained, named)
+    own, others = names(best, everything, explained)
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
@@ -150,7 +142,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         fits=(handed, *known),
         names=own,
         doubted=others,
-        ties=ties(best, [fit for fit in everything if score.alike(fit, best)]) | either(own),
+        ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )
 
 
@@ -199,9 +191,7 @@ class Score:
         """
         first = min(fits, key=self)
         equal = [fit for fit in fits if self.alike(fit, first) and fit.size <= first.size]
-        return min(
-            equal, key=lambda fit: (len(fit.explanation.effects), len({*fit.explanation.drifted} - {*apart}), self(fit))
-        )
+        return min(equal, key=lambda fit: (len(key(fit)), len({*fit.explanation.drifted} - {*apart}), self(fit)))
 
     def alike(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit makes the recordings as likely as the best, but for what is a tie."""
@@ -341,67 +331,36 @@ def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:
     return min(fits, key=lambda fit: rms_of(fit, samples))
 
 
-def names(
-    best: Fit, fits: Sequence[Fit], explained: bool, named: Mapping[str, Name]
-) -> tuple[dict[str, Name], dict[str, Name]]:
+def names(best: Fit, fits: Sequence[Fit], explained: bool) -> tuple[dict[str, Name], dict[str, Name]]:
     """How sure each effect of the `best` fit is, and how sure others that gain something, the surest first.
 
-    Where something remains, any fit that has an effect may tell how sure it is, and what is `named` as one of two stays
-    that. What explains all leaves to others the chance that it is the worse one.
+    Where something remains, any fit that has an effect may tell how sure it is. What explains all leaves to others the
+    chance that it is the worse one.
     """
     own = best.explanation.effects
     if explained:
-        mine = {effect: name_of(frozenset({effect}), best, fits, explained) for effect in own}
+        mine = {effect: name_of(effect, best, fits, explained) for effect in own}
         found = surest(
             (effect, Name(1.0 - better(fit, best), fit, best)) for fit in fits for effect in fit.explanation.effects
         )
     else:
-        found = surest(judged(fits)) | {name: each for name, each in named.items() if each.instead}
+        found = surest(judged(fits))
         mine = {effect: found[effect] for effect in own}
-    told = {*own, *(each.instead for each in mine.values())}
     doubted = (
-        (name, each) for name, each in found.items() if name in EFFECT and name not in told and each.confidence > 0.0
+        (name, each) for name, each in found.items() if name in EFFECT and name not in own and each.confidence > 0.0
     )
     return mine, dict(sorted(doubted, key=lambda each: -each[1].confidence))
 
 
-def nameable(fits: Sequence[Fit], named: Mapping[str, Name]) -> list[Fit]:
-    """Those of `fits` whose effects, and changes, all are `named`."""
-    return [fit for fit in fits if key(fit) <= named.keys()]
-
-
-def sure(fits: Sequence[Fit]) -> dict[str, Name]:
-    """The effects, and changes, that are sure enough to be named where an error remains, each alone, or as one of two.
-
-    Of two neither of which is sure, but that one of them acts, the likelier.
-    """
-    found = surest(judged(fits))
-    named = {name: each for name, each in found.items() if each.confidence >= least(name)}
-    doubted = sorted(name for name in found.keys() - named.keys() if name in EFFECT and not EFFECT[name].dated)
-    pairs = [one_of_two(frozenset(pair), fits) for pair in itertools.combinations(doubted, 2)]
-    together, name, each = max(filter(None, pairs), key=lambda pair: pair[0], default=(0.0, "", None))
-    return named | {name: each} if each is not None and together >= NAMED_EITHER else named
-
-
-def one_of_two(pair: frozenset[str], fits: Sequence[Fit]) -> tuple[float, str, Name] | None:
-    """How sure it is that one of two effects acts, and the likelier; None where no fit has one without the other."""
-    several = sorted((fit for fit in fits if len(key(fit) & pair) == 1), key=lambda fit: fit.chi2)
-    rivals = [fit for fit in several if key(fit) & pair != key(several[0]) & pair]
-    if not rivals:
-        return None
-    together = max(name_of(pair, fit, fits).confidence for fit in several)
-    (name,), (other,) = key(several[0]) & pair, key(rivals[0]) & pair
-    return together, name, Name(together * better(rivals[0], several[0]), several[0], rivals[0], instead=other)
-
-
-def either(names: Mapping[str, Name]) -> dict[str, tuple[tuple[str, ...], ...]]:
-    """For each effect that is sure only as one of two, the other one."""
-    return {name: ((each.instead,),) for name, each in names.items() if each.instead is not None}
+def named_alone(several: Sequence[Fit], fits: Sequence[Fit]) -> list[Fit]:
+    """Those of `several` whose effects, and changes, all are sure enough to be named where an error remains."""
+    sure = {name for name, each in surest(judged(fits)).items() if each.confidence >= least(name)}
+    return [fit for fit in several if key(fit) <= sure]
 
 
 def judged(fits: Sequence[Fit]) -> Iterator[tuple[str, Name]]:
     """Each effect, or change, of each fit, and how sure that fit makes it."""
-    return ((name, name_of(frozenset({name}), fit, fits)) for fit in fits for name in sorted(key(fit)))
+    return ((name, name_of(name, fit, fits)) for fit in fits for name in sorted(key(fit)))
 
 
 def surest(judged: Iterable[tuple[str, Name]]) -> dict[str, Name]:
@@ -418,12 +377,12 @@ def least(name: str) -> float:
     return NAMED_BY_TIME if name not in EFFECT or EFFECT[name].dated else NAMED
 
 
-def name_of(names: frozenset[str], best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
-    """How sure some effects, or changes, of the `best` fit are, against the best without any that changes no more.
+def name_of(name: str, best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
+    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that change no more.
 
     What explains all takes the whole error, whatever others leave.
     """
-    others = [fit for fit in fits if not names & key(fit) and len(key(fit)) <= len(key(best))]
+    others = [fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best))]
     simple = [fit for fit in others if fit.size <= best.size]
     rival = min(simple or others, key=lambda fit: fit.chi2)
     share = 1.0 if explained else taken(rival, best)
@@ -442,9 +401,10 @@ def taken(worse: Fit, fit: Fit) -> float:
 
     Nothing of an error that is not distinguished from the noise.
     """
-    if worse.ratio < EXPLAINED:
+    before, after = excess(worse), excess(fit)
+    if before <= 0.0 or worse.ratio < EXPLAINED:
         return 0.0
-    return min(max((worse.ratio**2 - fit.ratio**2) / (worse.ratio**2 - 1.0), 0.0), 1.0)
+    return min(max(1.0 - after / before, 0.0), 1.0)
 
 
 def ties(best: Fit, alike: Sequence[Fit]) -> dict[str, tuple[tuple[str, ...], ...]]:

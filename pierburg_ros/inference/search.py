@@ -9,17 +9,13 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-import numpy as np
-
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
 from pierburg_ros.inference.coordinates import in_order, without_effects
-from pierburg_ros.inference.evidence import EXPLAINED
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, moments_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
-from pierburg_ros.inference.intervals import moment_ends
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
 from pierburg_ros.plant import Model
@@ -35,6 +31,8 @@ that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
+LOOKED_AT = 2
+"""Iterations after which the changes of each parameter are compared. Work: where they start says too little."""
 MOVES = 2
 """Times that the moments of a change, or of a load, are read off a fit, and the fit made again. Work: the second moves
 them by samples."""
@@ -68,15 +66,12 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
     """The explanations that lead, fitted with the weakest pull of the ladder, best first.
 
     From the best of each size the next size is grown, until one leaves only noise or one more effect gains little.
-    What is no longer needed beside what came later is dropped again. They grow with the strongest pull with which the
-    re-estimated model leaves more than may be noise.
+    What is no longer needed beside what came later is dropped again.
     """
     search.tell("re-estimated parameters")
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
-    ended = followed([base], search.pool)
-    while base.ratio < EXPLAINED and (weaker := weaker_than(base)):
-        base = led(base, weaker[:1])
-    fitter, leading, found = base.fitter, [base], {key(base)}
+    leading = [base]
+    found, ended = {key(base)}, followed([base], search.pool)
     with fitter.effort.interruptible():
         for depth in range(1, DEEPEST + 1):
             if any(map(adequate, ended)) or fitter.effort.over:
@@ -234,56 +229,37 @@ def moments_in(fit: Fit, variant: Variant) -> list[str]:
 
 
 def changed(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit: those of the best.
+    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit.
 
     A moment is held while values are fitted, and then moved to where it gains most: a cost has no slope over it.
     """
     fitter = fit.fitter
 
-    def one(change: Change) -> Fit:
-        own, values = change.explanation, change.values
-        when = values[f"{own.changed}{WHEN}"]
-        for _ in range(MOVES):
-            found = fitter.fit(replace(own, when=when), values, BRIEF)
-            assert found.after is not None
-            values, when = found.values, fitter.moment(found.model, found.after)
-        return fitter.fit(own, {**values, f"{own.changed}{WHEN}": when}, 0)
+    def begun(change: Change) -> Fit:
+        own = change.explanation
+        return fitter.fit(replace(own, when=change.values[f"{own.changed}{WHEN}"]), change.values, LOOKED_AT)
 
-    every = search.pool.map(one, changes(fit, search.balance, free_parameters(fitter.nominal)))
-    return sorted(every, key=lambda each: each.chi2)[:STARTS]
+    def one(found: Fit) -> Fit:
+        for _ in range(MOVES):
+            assert found.after is not None
+            moved = replace(found.explanation, when=fitter.moment(found.model, found.after))
+            found = fitter.fit(moved, found.values, BRIEF)
+        return fitter.fit(replace(found.explanation, when=None), found.values, 0)
+
+    every = search.pool.map(begun, changes(fit, search.balance, free_parameters(fitter.nominal)))
+    return list(search.pool.map(one, sorted(every, key=lambda each: each.chi2)[:STARTS]))
 
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
     """The same explanations fitted on, pulled ever more weakly, best first."""
-    several = pool.map(lambda fit: led(fit, weaker_than(fit)), fits)
+    several = pool.map(lambda fit: led(fit, ladder(fit.fitter.data)[1:]), fits)
     return sorted(several, key=lambda fit: fit.chi2)
-
-
-def weaker_than(fit: Fit) -> list[float]:
-    """The time constants [s] of the pull that come after that of a fit."""
-    return [constant for constant in ladder(fit.fitter.data) if constant > fit.fitter.constant]
 
 
 def led(fit: Fit, constants: Iterable[float]) -> Fit:
     """The same explanation fitted with each of the `constants` [s] of the pull, one after the other."""
     for constant in constants:
-        fit = dated_again(fit.fitter.pulled(constant).fit(fit.explanation, fit.values))
-    return fit
-
-
-def dated_again(fit: Fit) -> Fit:
-    """A fit that leaves an error from the best of the moments that its samples hardly tell apart, if it has any.
-
-    While samples are held out, or a shaft rests, a cost is flat over a moment, but where a pull remembers what it
-    started. Moments are tried as far apart as the actuator's own time.
-    """
-    fitter = fit.fitter
-    for name in () if adequate(fit) else fit.explanation.names:
-        first, last = moment_ends(fit, name) or (0.0, 0.0)
-        moments = np.arange(first, last, fitter.data.scales.time).tolist()
-        several = [fitter.fit(fit.explanation, {**fit.values, name: moment}, 0) for moment in moments]
-        best = min((fit, *several), key=lambda each: each.chi2)
-        fit = fit if best is fit else fitter.fit(fit.explanation, best.values)
+        fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
     return fit
 
 
@@ -332,4 +308,5 @@ def label(fit: Fit) -> str:
 def free_parameters(nominal: Model) -> tuple[str, ...]:
     """Base parameters that a fit may change, and the numbers of effects that the actuator always has."""
     always = (f"{effect}.{name}" for effect in nominal.actuator.effects for name in EFFECT[effect].names)
-    return (*nominal.actuator.free, *(name for name in always if nominal.values[name] != 0.0 and name in DECLARED))
+    numbers = (name for name in always if name in DECLARED and not DECLARED[name].choices)
+    return (*nominal.actuator.free, *(name for name in numbers if nominal.values[name] != 0.0))

@@ -25,14 +25,14 @@ from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import Coordinates, in_order
 from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.evidence import SIGNIFICANT
-from pierburg_ros.inference.explanation import Explanation, Variant, moments_of
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fit, Fitter
 from pierburg_ros.inference.intervals import slopes_at
 from pierburg_ros.inference.least_squares import FULL, beside, jacobian, minimise
 from pierburg_ros.plant import Model
 
 SCREENED = 4
-"""Starts of one effect that the balance hands on, if it can see any. Work: each costs two simulations; not varied."""
+"""Starts of one effect that the balance hands on. Work: each costs two simulations; not varied."""
 SETTLING = 8
 """Iterations of such a fit. Work: the simulation fits on."""
 EQUAL = 0.01
@@ -212,11 +212,7 @@ def read(
         side, project, left = sides[declared.dated]
         if declared.along is not None and declared.mark is None:
             screened = [_screened(side, values, variant, group, project, left) for group in several]
-            screened.sort(key=lambda each: -each.fall)
-            # an effect that a balance could not see is simulated, but for the many spans of time in which it may act
-            spans = {*moments_of(variant.effect)} & {*variant.free} or (acting and declared.dated)
-            kept = SCREENED if spans or any(each.seen for each in screened) else len(screened)
-            several = [each.starts for each in screened[:kept]]
+            several = [group for _, group in sorted(screened, key=lambda each: -each[0])[:SCREENED]]
             several = [_dated(side, values, variant, group, project, left) for group in several]
         for group in several:
             begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
@@ -271,18 +267,6 @@ def sloped(
     return left, jacobian(residual, point, left, *coordinates.bounds, coordinates.steps)
 
 
-@dataclass(frozen=True)
-class Screened:
-    """What starts that differ in phase alone take of the balance's squared error, and they with their strength.
-
-    `seen`: with the strength that they declare they would be evident in the balance.
-    """
-
-    fall: float
-    starts: list[Start]
-    seen: bool
-
-
 def _screened(
     balance: Balance,
     values: Mapping[str, float],
@@ -290,15 +274,14 @@ def _screened(
     group: Sequence[Start],
     basis: Signal,
     left: Signal,
-) -> Screened:
-    """What starts take of the balance's squared error that differ in phase alone."""
+) -> tuple[float, list[Start]]:
+    """What starts take of the balance's squared error that differ in phase alone, and they with their strength."""
     columns = np.stack([balance.column(added(values, variant, start), variant.effect) for start in group], axis=1)
     columns = beside(columns, basis)
     scale, fall = _step(columns, left, _limits(variant.effect, group))
-    noise = float(left @ left) / left.size
-    seen = float(np.min(np.sum(np.square(columns), axis=0))) > SIGNIFICANT * noise
     # what takes no more than chance gives tells nothing of its strength
-    return Screened(fall, _scaled(variant.effect, group, scale) if seen and fall > noise else list(group), seen)
+    told = fall * left.size > float(left @ left)
+    return fall, _scaled(variant.effect, group, scale) if told else list(group)
 
 
 def _dated(
@@ -317,9 +300,9 @@ def _dated(
         step *= 0.5
         for name in moments:
             for by in (-step, step):
-                moved = [{**start, name: start[name] + by if start[name] else 0.0} for start in best.starts]
-                best = max(best, _screened(balance, values, variant, moved, basis, left), key=lambda each: each.fall)
-    return best.starts
+                moved = [{**start, name: start[name] + by if start[name] else 0.0} for start in best[1]]
+                best = max(best, _screened(balance, values, variant, moved, basis, left), key=lambda each: each[0])
+    return best[1]
 
 
 DATES = 30
