@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pierburg_ros.effects import EFFECT
 
@@ -76,12 +76,12 @@ class Explanation:
 
     def plus(self, variant: Variant) -> Explanation:
         """This explanation with one more effect."""
-        return Explanation(self.drifted, (*self.variants, variant), self.changed)
+        return replace(self, variants=(*self.variants, variant))
 
     def formed(self, variant: Variant) -> Explanation:
         """This explanation with one of its effects acting in this way."""
         own = tuple(variant if each.effect == variant.effect else each for each in self.variants)
-        return Explanation(self.drifted, own, self.changed)
+        return replace(self, variants=own)
 
 
 def jumps(explanation: Explanation) -> bool:

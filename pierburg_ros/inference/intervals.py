@@ -113,7 +113,7 @@ def moment_ends(fit: Fit, name: str) -> tuple[float, float] | None:
     if name.endswith(WHEN):
         assert fit.after is not None
         gained, where = fitter.gained(fit.model, fit.after), np.ones(time.size, dtype=bool)
-    elif parameter and (moments := moments_of(effect)) and parameter in moments:
+    elif parameter and parameter in (moments := moments_of(effect)):
         start, end = (fit.values[f"{effect}.{each}"] for each in moments)
         present = fit.model.with_values({f"{effect}.{each}": 0.0 for each in moments})
         gained = fitter.gained(without_effects(fit.model, [effect]), present)

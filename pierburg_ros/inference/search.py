@@ -222,7 +222,7 @@ def other_way_round(fits: Sequence[Fit], pool: Executor) -> list[Fit]:
 
 
 def moments_in(fit: Fit, variant: Variant) -> list[str]:
-    """Those of them that a fit moves, and that are not at an end of the recording."""
+    """Those moments of an effect that a fit moves, and that are not at an end of the recording."""
     return [
         name for name in moments_of(variant.effect) if name in variant.free and fit.values[f"{variant.effect}.{name}"]
     ]
