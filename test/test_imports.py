@@ -107,7 +107,16 @@ ROOMS = {
         "polish": {"covariance", "fit", "intervals"},
         "shortlist": {"balance", "coordinates", "data", "evidence", "explanation", "fit", "intervals", "least_squares"},
         "changes": {"balance", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
-        "search": {"balance", "changes", "coordinates", "explanation", "fit", "least_squares", "shortlist"},
+        "search": {
+            "balance",
+            "changes",
+            "coordinates",
+            "explanation",
+            "fit",
+            "intervals",
+            "least_squares",
+            "shortlist",
+        },
         "choice": {"evidence", "explanation", "fit", "polish", "search", "shortlist"},
     },
     "nodes": {

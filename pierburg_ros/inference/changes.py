@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pierburg_ros.arrays import Signal
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.coordinates import Coordinates
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
@@ -29,7 +30,7 @@ class Change:
 
 
 def changes(fit: Fit, balance: Balance, names: Sequence[str]) -> list[Change]:
-    """The change of each base parameter of `names` that would lower the error of the balance most, best first.
+    """A change of each base parameter of `names`, at the moment at which one would lower the error of the balance most.
 
     Beside the drifts of a `fit`: what they scale with as a whole may still change alone. None for several recordings: a
     change is at a time of one.
@@ -44,19 +45,18 @@ def changes(fit: Fit, balance: Balance, names: Sequence[str]) -> list[Change]:
     basis = np.linalg.qr(slopes[:, [names.index(name) for name in drifted]])[0]
     left = beside(left, basis)
     time, end = inside.motions[0].time, balance.duration
+
+    def steps(moment: float) -> tuple[Signal, Signal]:
+        """The best step of each parameter then, and by how much it lowers the squared error, each shape (names,)."""
+        columns = beside(np.where(time[:, np.newaxis] >= moment, slopes, 0.0), basis)
+        size = np.maximum(np.sum(np.square(columns), axis=0), 1e-300)
+        step = -(columns.T @ left) / size
+        return step, np.square(step) * size
+
+    moment = max(np.linspace(FROM_ENDS, 1.0 - FROM_ENDS, MOMENTS) * end, key=lambda each: float(np.max(steps(each)[1])))
     found = []
-    for place, name in enumerate(names):
-        for moment in np.linspace(FROM_ENDS, 1.0 - FROM_ENDS, MOMENTS) * end:
-            column = beside(np.where(time >= moment, slopes[:, place], 0.0), basis)
-            size = float(column @ column)
-            if size > 0.0:
-                step = -float(column @ left) / size
-                found.append((step**2 * size, name, float(moment), step))
-    best: dict[str, Change] = {}
-    for _, name, moment, step in sorted(found, reverse=True):
-        if name not in best:
-            axis = coordinates.axes[names.index(name)]
-            after = axis.value(float(np.clip(axis.coordinate(values[name]) + step, axis.lower, axis.upper)))
-            own = Explanation(tuple(n for n in drifted if n != name), fit.explanation.variants, name)
-            best[name] = Change(own, {**values, name + AFTER: after, name + WHEN: moment})
-    return list(best.values())
+    for name, axis, step in zip(names, coordinates.axes, steps(moment)[0], strict=True):
+        after = axis.value(float(np.clip(axis.coordinate(values[name]) + step, axis.lower, axis.upper)))
+        own = Explanation(tuple(n for n in drifted if n != name), fit.explanation.variants, name)
+        found.append(Change(own, {**values, name + AFTER: after, name + WHEN: float(moment)}))
+    return found

@@ -22,9 +22,9 @@ from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, TIED, certainty, probability
 from pierburg_ros.inference.explanation import Explanation, id_of, jumps, without
 from pierburg_ros.inference.explanation import quantities as quantities_of
-from pierburg_ros.inference.fit import Fit, adequate, excess, rms_of, strongest
+from pierburg_ros.inference.fit import Fit, adequate, rms_of, strongest
 from pierburg_ros.inference.polish import polished
-from pierburg_ros.inference.search import DEEPEST, Search, aliases, begun_again, key, other_way_round
+from pierburg_ros.inference.search import DEEPEST, Search, bare, begun_again, from_description, key, other_way_round
 from pierburg_ros.inference.shortlist import DEPENDENT
 
 REFITTED = 3
@@ -120,12 +120,12 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
     everything += fewest([described, *whole], parameters, search)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)
-    if len(best.explanation.drifted) > 1:
-        alike = list(aliases(next(fit for fit in fits if key(fit) == key(best)), search))
+    if explained and len(best.explanation.drifted) > 1:
+        beside = [fit for fit in fits if bare(fit) or key(fit) == key(best)]
+        alike = [each for fit in beside for each in from_description(fit, search)]
         alike += fewest([described, *alike], parameters, search)
         everything += alike
-        able += alike if explained else named_alone(alike, everything)
-        best = Score.of(able).best(able, apart)
+        best = Score.of([*able, *alike]).best([*able, *alike], apart)
     best, dropped = needed(begun_again(best, search), pool)
     everything += [*dropped, *in_place(best, whole, parameters, search)]
     score = Score.of([best, *everything])
@@ -144,11 +144,6 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         doubted=others,
         ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
     )
-
-
-def bare(fit: Fit) -> bool:
-    """Whether an explanation has neither effects nor a change in mid-recording."""
-    return not fit.explanation.variants and fit.explanation.changed is None
 
 
 @dataclass(frozen=True)
@@ -191,7 +186,9 @@ class Score:
         """
         first = min(fits, key=self)
         equal = [fit for fit in fits if self.alike(fit, first) and fit.size <= first.size]
-        return min(equal, key=lambda fit: (len(key(fit)), len({*fit.explanation.drifted} - {*apart}), self(fit)))
+        return min(
+            equal, key=lambda fit: (len(fit.explanation.effects), len({*fit.explanation.drifted} - {*apart}), self(fit))
+        )
 
     def alike(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit makes the recordings as likely as the best, but for what is a tie."""
@@ -401,10 +398,9 @@ def taken(worse: Fit, fit: Fit) -> float:
 
     Nothing of an error that is not distinguished from the noise.
     """
-    before, after = excess(worse), excess(fit)
-    if before <= 0.0 or worse.ratio < EXPLAINED:
+    if worse.ratio < EXPLAINED:
         return 0.0
-    return min(max(1.0 - after / before, 0.0), 1.0)
+    return min(max((worse.ratio**2 - fit.ratio**2) / (worse.ratio**2 - 1.0), 0.0), 1.0)
 
 
 def ties(best: Fit, alike: Sequence[Fit]) -> dict[str, tuple[tuple[str, ...], ...]]:

@@ -22,6 +22,7 @@ from pierburg_ros.inference.covariance import RANK, Spread, spread
 from pierburg_ros.inference.explanation import WHEN, Explanation, moments_of, without
 from pierburg_ros.inference.fit import Fit, strongest
 from pierburg_ros.inference.slopes import sharp
+from pierburg_ros.plant import Model
 
 HALF_KNOWN = 0.5
 """A value whose 95 % interval reaches further than this share of it to either side is not identifiable. Given: nobody
@@ -115,8 +116,7 @@ def moment_ends(fit: Fit, name: str) -> tuple[float, float] | None:
         gained, where = fitter.gained(fit.model, fit.after), np.ones(time.size, dtype=bool)
     elif parameter and parameter in (moments := moments_of(effect)):
         start, end = (fit.values[f"{effect}.{each}"] for each in moments)
-        present = fit.model.with_values({f"{effect}.{each}": 0.0 for each in moments})
-        gained = fitter.gained(without_effects(fit.model, [effect]), present)
+        gained = fitter.gained(*at_no_time_and_always(fit, effect))
         is_start = parameter == moments[0]
         gained, where = (gained, time < (end or math.inf)) if is_start else (-gained, time >= start)
     else:
@@ -126,6 +126,12 @@ def moment_ends(fit: Fit, name: str) -> tuple[float, float] | None:
     allowed = np.min(gained[where]) + TWO_SIDED * fit.repetition * max(fit.ratio**2, 1.0)
     possible = np.flatnonzero(where & (gained <= allowed))
     return float(time[possible[0]]), float(time[min(possible[-1] + 1, time.size - 1)])
+
+
+def at_no_time_and_always(fit: Fit, effect: str) -> tuple[Model, Model]:
+    """The model of a fit without a dated effect, and with it at all times."""
+    always = fit.model.with_values({f"{effect}.{each}": 0.0 for each in moments_of(effect)})
+    return without_effects(always, [effect]), always
 
 
 def slopes_at(fit: Fit, explanation: Explanation) -> Signal:

@@ -9,13 +9,16 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
+import numpy as np
+
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.balance import Balance
 from pierburg_ros.inference.changes import Change, changes
-from pierburg_ros.inference.coordinates import in_order, without_effects
+from pierburg_ros.inference.coordinates import in_order
 from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps, moments_of, without
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
+from pierburg_ros.inference.intervals import at_no_time_and_always, moment_ends
 from pierburg_ros.inference.least_squares import BRIEF
 from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
 from pierburg_ros.plant import Model
@@ -31,14 +34,9 @@ that explains most promised 0.48 of the best at least (n = 15 recordings).
 """
 STARTS = 2
 """Promises of one effect that are fitted. Work: each costs a short fit; not varied."""
-LOOKED_AT = 2
-"""Iterations after which the changes of each parameter are compared. Work: where they start says too little."""
 MOVES = 2
 """Times that the moments of a change, or of a load, are read off a fit, and the fit made again. Work: the second moves
 them by samples."""
-ALIAS = 0.05
-"""Share of what an effect changes that drifts cannot make, below which it may stand for drifts. Chosen: a sag of the
-supply is absorbed to 78 to 99 % by the resistance; not varied."""
 BEAM = 3
 """Explanations of each size that are grown and fitted on. Work: as for `TRIED`."""
 WORTH_ADDING = 0.9
@@ -66,39 +64,50 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
     """The explanations that lead, fitted with the weakest pull of the ladder, best first.
 
     From the best of each size the next size is grown, until one leaves only noise or one more effect gains little.
-    What is no longer needed beside what came later is dropped again.
+    Where no effect that promises something explains alone, each is also tried from the description on. What is no
+    longer needed beside what came later is dropped again.
     """
+    pool = search.pool
     search.tell("re-estimated parameters")
     base = fitter.fit(Explanation(search.drifts), described_or_balanced(fitter, search))
-    leading = [base]
-    found, ended = {key(base)}, followed([base], search.pool)
+    leading, ended = [base], followed([base], pool)
     with fitter.effort.interruptible():
-        for depth in range(1, DEEPEST + 1):
+        for size in range(1, DEEPEST + 1):
             if any(map(adequate, ended)) or fitter.effort.over:
                 break
-            grown: list[Fit] = []
-            for fit in leading:
-                search.tell(f"what could be added to {label(fit)}")
-                promised = promises(fit, search.balance, search.candidates, search.pool)
-                grown += fits_of(fit, best_of_each(promised, TRIED if depth > 1 else len(EFFECT)), search)
-                grown += changed(fit, search) if depth == 1 else []
-            new = [fit for fit in best_of_support(grown) if key(fit) not in found]
-            if not new:
+            several = to_the_end([each for fit in leading for each in promising(fit, search)], search)
+            ended = best_of_support([*ended, *followed(several, pool)])
+            if size == 1 and not any(map(adequate, ended)):
+                described = to_the_end(from_description(base, search), search)
+                several, ended = [*several, *described], best_of_support([*ended, *followed(described, pool)])
+            if not several:
                 break
-            found.update(map(key, new))
-            search.tell(f"{label(new[0])}, to the end")
-            several = list(search.pool.map(lambda fit: fitter.fit(fit.explanation, fit.values), new[:BEAM]))
-            before, leading = leading[0], nearest(several)
-            ended = best_of_support([*ended, *followed(leading, search.pool)])
-            ended = best_of_support([*ended, *followed(without_one(ended[0], search.pool), search.pool)])
+            ended = best_of_support([*ended, *followed(without_one(ended[0], pool), pool)])
+            before, leading = leading[0], nearest(several)[:BEAM]
             if excess(leading[0]) > WORTH_ADDING * excess(before):
                 break
     return ended
 
 
+def promising(fit: Fit, search: Search) -> list[Fit]:
+    """Short fits with an effect added that promises most, and with a parameter that changes where there is none yet."""
+    search.tell(f"what could be added to {label(fit)}")
+    promised = promises(fit, search.balance, search.candidates, search.pool)
+    if bare(fit):
+        return [*fits_of(fit, best_of_each(promised, len(EFFECT)), search), *changed(fit, search)]
+    return fits_of(fit, best_of_each(promised, TRIED), search)
+
+
+def to_the_end(several: Sequence[Fit], search: Search) -> list[Fit]:
+    """The best of some short fits, one of each support, fitted until they gain no more, best first."""
+    best = best_of_support(several)[:BEAM]
+    search.tell(f"{', '.join(map(label, best))}, to the end")
+    return nearest(list(search.pool.map(lambda fit: fit.fitter.fit(fit.explanation, fit.values), best)))
+
+
 def nearest(fits: Sequence[Fit]) -> list[Fit]:
-    """The fits that leave at most `GROWN` times the mean square of the best, best first."""
-    ordered = sorted(fits, key=lambda fit: fit.chi2)
+    """The best fit of each support that leaves at most `GROWN` times the mean square of the best, best first."""
+    ordered = best_of_support(fits)
     return [fit for fit in ordered if fit.chi2 <= GROWN * ordered[0].chi2]
 
 
@@ -115,18 +124,31 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
     return list(pool.map(one, fit.explanation.variants))
 
 
-def aliases(fit: Fit, search: Search) -> list[Fit]:
-    """A fit with an effect added that may stand for its drifts: what equals them, and what promises most beside.
+def from_description(fit: Fit, search: Search) -> list[Fit]:
+    """Short fits with each effect added to a fit whose drifts begin as described: some may stand for the effect.
 
-    None where the effort is spent. What promises most on a fit that leaves more than noise was grown on it before.
+    A descent from the fit on would have to give these up first, and next to them the effect promises nothing. None
+    where the effort is spent.
     """
-    if fit.fitter.effort.over:
+    fitter = fit.fitter
+    if fitter.effort.over:
         return []
-    search.tell(f"what equals the drifts beside {label(fit)}")
-    few = [(variant, starts[:1]) for variant, starts in search.candidates if EFFECT[variant.effect].ripple is None]
-    promised = promises(fit, search.balance, few, search.pool)
-    most = best_of_each(promised, len(EFFECT)) if adequate(fit) else []
-    return best_of_support(fits_of(fit, [*most, *(p for p in promised if p.own < ALIAS and p not in most)], search))
+    search.tell(f"what may stand for the drifts beside {label(fit)}")
+    described = {**fit.values, **{name: fitter.nominal.values[name] for name in fit.explanation.drifted}}
+
+    def one(candidate: tuple[Variant, list[dict[str, float]]]) -> Fit | None:
+        variant, starts = candidate
+        with suppress(InputError):
+            values = in_order(added(described, variant, starts[0]), fitter.nominal)
+            return fitter.fit(fit.explanation.plus(variant), values, BRIEF)
+        return None
+
+    others = [
+        (variant, starts)
+        for variant, starts in search.candidates
+        if variant.effect not in fit.explanation.effects and EFFECT[variant.effect].ripple is None
+    ]
+    return best_of_support(filter(None, search.pool.map(one, others)))
 
 
 def begun_again(fit: Fit, search: Search) -> Fit:
@@ -189,8 +211,7 @@ def timed(fit: Fit, variant: Variant) -> Fit:
     if not {*moments} & {*variant.free} or len(fitter.data.runs) > 1:
         return fit
     for _ in range(MOVES):
-        always = fit.model.with_values({f"{variant.effect}.{name}": 0.0 for name in moments})
-        span, own = fitter.span(without_effects(always, [variant.effect]), always), variant
+        span, own = fitter.span(*at_no_time_and_always(fit, variant.effect)), variant
         for name, moment in zip(moments, span, strict=True):
             own = own if moment else own.holding(name, 0.0)
         values = {f"{variant.effect}.{name}": moment for name, moment in zip(moments, span, strict=True)}
@@ -229,25 +250,23 @@ def moments_in(fit: Fit, variant: Variant) -> list[str]:
 
 
 def changed(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit.
+    """Short fits in which a parameter changes in mid-recording, beside the drifts of a fit: those of the best.
 
     A moment is held while values are fitted, and then moved to where it gains most: a cost has no slope over it.
     """
     fitter = fit.fitter
 
-    def begun(change: Change) -> Fit:
-        own = change.explanation
-        return fitter.fit(replace(own, when=change.values[f"{own.changed}{WHEN}"]), change.values, LOOKED_AT)
-
-    def one(found: Fit) -> Fit:
+    def one(change: Change) -> Fit:
+        own, values = change.explanation, change.values
+        when = values[f"{own.changed}{WHEN}"]
         for _ in range(MOVES):
+            found = fitter.fit(replace(own, when=when), values, BRIEF)
             assert found.after is not None
-            moved = replace(found.explanation, when=fitter.moment(found.model, found.after))
-            found = fitter.fit(moved, found.values, BRIEF)
-        return fitter.fit(replace(found.explanation, when=None), found.values, 0)
+            values, when = found.values, fitter.moment(found.model, found.after)
+        return fitter.fit(own, {**values, f"{own.changed}{WHEN}": when}, 0)
 
-    every = search.pool.map(begun, changes(fit, search.balance, free_parameters(fitter.nominal)))
-    return list(search.pool.map(one, sorted(every, key=lambda each: each.chi2)[:STARTS]))
+    every = search.pool.map(one, changes(fit, search.balance, free_parameters(fitter.nominal)))
+    return sorted(every, key=lambda each: each.chi2)[:STARTS]
 
 
 def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
@@ -259,7 +278,23 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
 def led(fit: Fit, constants: Iterable[float]) -> Fit:
     """The same explanation fitted with each of the `constants` [s] of the pull, one after the other."""
     for constant in constants:
-        fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
+        fit = dated_again(fit.fitter.pulled(constant).fit(fit.explanation, fit.values))
+    return fit
+
+
+def dated_again(fit: Fit) -> Fit:
+    """A fit that leaves an error from the best of the moments that its samples hardly tell apart, if it has any.
+
+    While samples are held out, or a shaft rests, a cost is flat over a moment, but where a pull remembers what it
+    started. Moments are tried as far apart as the actuator's own time.
+    """
+    fitter = fit.fitter
+    for name in () if adequate(fit) else fit.explanation.names:
+        first, last = moment_ends(fit, name) or (0.0, 0.0)
+        moments = np.arange(first, last, fitter.data.scales.time).tolist()
+        several = [fitter.fit(fit.explanation, {**fit.values, name: moment}, 0) for moment in moments]
+        best = min((fit, *several), key=lambda each: each.chi2)
+        fit = fit if best is fit else fitter.fit(fit.explanation, best.values)
     return fit
 
 
@@ -296,6 +331,11 @@ def key(fit: Fit) -> frozenset[str]:
     """The effects of a fit, and the parameter that changes in it."""
     own = fit.explanation
     return frozenset((*own.effects, own.changed) if own.changed else own.effects)
+
+
+def bare(fit: Fit) -> bool:
+    """Whether an explanation has neither effects nor a change in mid-recording."""
+    return not key(fit)
 
 
 def label(fit: Fit) -> str:

@@ -46,9 +46,7 @@ class Promise:
     """A start of an added effect: all values by dotted name, and the shares of the error that it promises to take.
 
     `simulated` is that of a pulled fit by one linear step, `along` that of the balance, `at_rests` of the torque that
-    friction cannot bear at rests. `own` is the share, 0 to 1, of
-    what the effect changes that no change of the values which are free already makes. `balanced` are all values by the
-    balance with the effect acting.
+    friction cannot bear at rests. `balanced` are all values by the balance with the effect acting.
     """
 
     variant: Variant
@@ -56,7 +54,6 @@ class Promise:
     simulated: float
     along: float
     at_rests: float
-    own: float
     balanced: dict[str, float]
 
     def equals(self, other: Promise) -> bool:
@@ -351,9 +348,7 @@ def _promise(fit: Fit, reading: Reading) -> Promise | None:
         except InputError:
             return None
         columns.append(fitter.residual(*models)[samples] - before)
-    whole = np.stack(columns, axis=1)
-    changed = beside(whole, fit.basis)
-    own = float(np.sum(np.square(changed)) / max(np.sum(np.square(whole)), 1e-300))
+    changed = beside(np.stack(columns, axis=1), fit.basis)
     scale, fall = _step(changed, beside(before, fit.basis), _limits(variant.effect, group))
     start = _scaled(variant.effect, group, scale)[0]
     if EFFECT[variant.effect].mark is not None:
@@ -361,7 +356,7 @@ def _promise(fit: Fit, reading: Reading) -> Promise | None:
         fall = max(fall, fit.chi2 - _chi2_at(fit, reading))
     simulated = fall / max(fit.chi2, 1e-300)
     values = in_order(added(fit.values, variant, start), fitter.nominal)
-    return Promise(variant, values, simulated, reading.share, reading.at_rests, own, reading.values)
+    return Promise(variant, values, simulated, reading.share, reading.at_rests, reading.values)
 
 
 def _chi2_at(fit: Fit, reading: Reading) -> float:
