@@ -76,7 +76,8 @@ class Balance:
 
     def _only(self, size: Signal) -> Balance:
         """The samples in which a `size`, shape (samples,), is not outlying."""
-        inside = np.split(size <= OUTLYING * np.median(size), self._ends)
+        limit = OUTLYING * np.median(size) if size.size else 0.0
+        inside = np.split(size <= limit, self._ends)
         kept = (motion.only(part) for motion, part in zip(self.motions, inside, strict=True))
         return Balance(self.actuator, tuple(kept))
 

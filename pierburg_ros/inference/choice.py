@@ -38,6 +38,10 @@ Measured: beside physics that no effect describes wrong effects had 0.34 at most
 NAMED_BY_TIME = 0.75
 """The same of what acts at times of its own, which may follow any physics in time. Measured: a load over time had 0.64
 at most where there was none (n = 16)."""
+NAMED_EITHER = 0.75
+"""Least confidence that one of two effects acts at which the likelier of them is named, the other as its tie. As for
+`NAMED_BY_TIME`: two follow more than one does. Measured: 0.2 at most where there was none (n = 3), 0.96 where one of
+two frictions that fit alike was hidden."""
 
 
 @dataclass(frozen=True)
@@ -46,13 +50,15 @@ class Name:
 
     It is the probability that the fit is better, times the share of the rival's error above the noise that it takes:
     where something remains that no effect describes, any effect takes a part of it. `along` is that share of the error
-    of the balance, where the balance alone names the effect.
+    of the balance, where the balance alone names the effect. `instead` is the effect that may act in its place, where
+    only one of both is sure.
     """
 
     confidence: float
     fit: Fit
     rival: Fit
     along: float | None = None
+    instead: str | None = None
 
 
 @dataclass(frozen=True)
@@ -112,11 +118,12 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
     described = fitter.fit(Explanation(), nominal.values, 0)
     whole = [*fits, *other_way_round(fits, pool)]
     everything = [described, *whole]
-    apart = estimated.explanation.drifted
+    apart, named = estimated.explanation.drifted, dict[str, Name]()
     if not explained:
         # where an error remains only what the recordings tell apart may follow it
         parameters = apart
-        whole = [min(named_alone(whole, everything), key=lambda fit: fit.chi2)]
+        named = sure(everything)
+        whole = [min((fit for fit in whole if key(fit) <= named.keys()), key=lambda fit: fit.chi2)]
     everything += fewest([described, *whole], parameters, search)
     able = [fit for fit in everything if explained or key(fit) <= key(whole[0])]
     best = Score.of(able).best(able, apart)
@@ -129,7 +136,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
     best, dropped = needed(begun_again(best, search), pool)
     everything += [*dropped, *in_place(best, whole, parameters, search)]
     score = Score.of([best, *everything])
-    own, others = names(best, everything, explained)
+    own, others = names(best, everything, explained, named)
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)
     return Choice(
@@ -142,7 +149,7 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         fits=(handed, *known),
         names=own,
         doubted=others,
-        ties=ties(best, [fit for fit in everything if score.alike(fit, best)]),
+        ties=ties(best, [fit for fit in everything if score.alike(fit, best)]) | either(own),
     )
 
 
@@ -328,36 +335,63 @@ def predictor(best: Fit, fits: Sequence[Fit]) -> Fit:
     return min(fits, key=lambda fit: rms_of(fit, samples))
 
 
-def names(best: Fit, fits: Sequence[Fit], explained: bool) -> tuple[dict[str, Name], dict[str, Name]]:
+def names(
+    best: Fit, fits: Sequence[Fit], explained: bool, named: Mapping[str, Name]
+) -> tuple[dict[str, Name], dict[str, Name]]:
     """How sure each effect of the `best` fit is, and how sure others that gain something, the surest first.
 
-    Where something remains, any fit that has an effect may tell how sure it is. What explains all leaves to others the
-    chance that it is the worse one.
+    Where something remains, any fit that has an effect may tell how sure it is, and what is `named` as one of two stays
+    that. What explains all leaves to others the chance that it is the worse one.
     """
     own = best.explanation.effects
     if explained:
-        mine = {effect: name_of(effect, best, fits, explained) for effect in own}
+        mine = {effect: name_of(frozenset({effect}), best, fits, explained) for effect in own}
         found = surest(
             (effect, Name(1.0 - better(fit, best), fit, best)) for fit in fits for effect in fit.explanation.effects
         )
     else:
-        found = surest(judged(fits))
+        found = surest(judged(fits)) | {name: each for name, each in named.items() if each.instead}
         mine = {effect: found[effect] for effect in own}
+    told = {*own, *(each.instead for each in mine.values())}
     doubted = (
-        (name, each) for name, each in found.items() if name in EFFECT and name not in own and each.confidence > 0.0
+        (name, each) for name, each in found.items() if name in EFFECT and name not in told and each.confidence > 0.0
     )
     return mine, dict(sorted(doubted, key=lambda each: -each[1].confidence))
 
 
-def named_alone(several: Sequence[Fit], fits: Sequence[Fit]) -> list[Fit]:
-    """Those of `several` whose effects, and changes, all are sure enough to be named where an error remains."""
-    sure = {name for name, each in surest(judged(fits)).items() if each.confidence >= least(name)}
-    return [fit for fit in several if key(fit) <= sure]
+def sure(fits: Sequence[Fit]) -> dict[str, Name]:
+    """The effects, and changes, that are sure enough to be named where an error remains, each alone, or as one of two.
+
+    Of two neither of which is sure, but that one of them acts, the likelier.
+    """
+    found = surest(judged(fits))
+    named = {name: each for name, each in found.items() if each.confidence >= least(name)}
+    doubted = sorted(name for name in found.keys() - named.keys() if name in EFFECT and not EFFECT[name].dated)
+    pairs = [one_of_two(frozenset(pair), fits) for pair in itertools.combinations(doubted, 2)]
+    together, name, each = max(filter(None, pairs), key=lambda pair: pair[0], default=(0.0, "", None))
+    return named | {name: each} if each is not None and together >= NAMED_EITHER else named
+
+
+def one_of_two(pair: frozenset[str], fits: Sequence[Fit]) -> tuple[float, str, Name] | None:
+    """How sure it is that one of two effects acts, and the likelier; None where no fit has one without the other."""
+    apart = [[fit for fit in fits if key(fit) & pair == {name}] for name in sorted(pair)]
+    if not all(apart):
+        return None
+    together = max(name_of(pair, fit, fits).confidence for several in apart for fit in several)
+    first, second = (min(several, key=lambda fit: fit.chi2) for several in apart)
+    best, rival = (first, second) if better(second, first) >= 0.5 else (second, first)
+    (name,), (other,) = key(best) & pair, key(rival) & pair
+    return together, name, Name(together * better(rival, best), best, rival, instead=other)
+
+
+def either(names: Mapping[str, Name]) -> dict[str, tuple[tuple[str, ...], ...]]:
+    """For each effect that is sure only as one of two, the other one."""
+    return {name: ((each.instead,),) for name, each in names.items() if each.instead is not None}
 
 
 def judged(fits: Sequence[Fit]) -> Iterator[tuple[str, Name]]:
     """Each effect, or change, of each fit, and how sure that fit makes it."""
-    return ((name, name_of(name, fit, fits)) for fit in fits for name in sorted(key(fit)))
+    return ((name, name_of(frozenset({name}), fit, fits)) for fit in fits for name in sorted(key(fit)))
 
 
 def surest(judged: Iterable[tuple[str, Name]]) -> dict[str, Name]:
@@ -374,12 +408,12 @@ def least(name: str) -> float:
     return NAMED_BY_TIME if name not in EFFECT or EFFECT[name].dated else NAMED
 
 
-def name_of(name: str, best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
-    """How sure an effect, or a change, of the `best` fit is, against the best of all without it that change no more.
+def name_of(names: frozenset[str], best: Fit, fits: Sequence[Fit], explained: bool = False) -> Name:
+    """How sure some effects, or changes, of the `best` fit are, against the best without any that changes no more.
 
     What explains all takes the whole error, whatever others leave.
     """
-    others = [fit for fit in fits if name not in key(fit) and len(key(fit)) <= len(key(best))]
+    others = [fit for fit in fits if not names & key(fit) and len(key(fit)) <= len(key(best))]
     simple = [fit for fit in others if fit.size <= best.size]
     rival = min(simple or others, key=lambda fit: fit.chi2)
     share = 1.0 if explained else taken(rival, best)

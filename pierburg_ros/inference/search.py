@@ -39,9 +39,6 @@ MOVES = 2
 them by samples."""
 BEAM = 3
 """Explanations of each size that are grown and fitted on. Work: as for `TRIED`."""
-WORTH_ADDING = 0.9
-"""Share of the error above the noise that the best explanation of a size may leave of what the best smaller one leaves,
-for another effect to be added. Chosen: a tenth is worth the work; not varied."""
 GROWN = 4.0
 """Mean square, in that of the best explanation of a size, up to which another one is fitted on and grown. Chosen: what
 leaves twice the error of the best hardly holds the effect that explains most; not varied."""
@@ -84,7 +81,8 @@ def searched(fitter: Fitter, search: Search) -> list[Fit]:
                 break
             ended = best_of_support([*ended, *followed(without_one(ended[0], pool), pool)])
             before, leading = leading[0], nearest(several)[:BEAM]
-            if excess(leading[0]) > WORTH_ADDING * excess(before):
+            # of as many effects as may still act the one that takes most takes its part at least
+            if excess(leading[0]) > (1.0 - 1.0 / (DEEPEST + 1 - size)) * excess(before):
                 break
     return ended
 
@@ -125,10 +123,10 @@ def without_one(fit: Fit, pool: Executor) -> list[Fit]:
 
 
 def from_description(fit: Fit, search: Search) -> list[Fit]:
-    """Short fits with each effect added to a fit whose drifts begin as described: some may stand for the effect.
+    """A short fit with each form of each effect added to a fit whose drifts begin as described.
 
-    A descent from the fit on would have to give these up first, and next to them the effect promises nothing. None
-    where the effort is spent.
+    Drifts may stand for an effect: next to them it promises nothing, and a descent would have to give them up first.
+    None where the effort is spent.
     """
     fitter = fit.fitter
     if fitter.effort.over:
@@ -148,7 +146,7 @@ def from_description(fit: Fit, search: Search) -> list[Fit]:
         for variant, starts in search.candidates
         if variant.effect not in fit.explanation.effects and EFFECT[variant.effect].ripple is None
     ]
-    return best_of_support(filter(None, search.pool.map(one, others)))
+    return list(filter(None, search.pool.map(one, others)))
 
 
 def begun_again(fit: Fit, search: Search) -> Fit:

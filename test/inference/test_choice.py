@@ -1,14 +1,15 @@
 """The choice between explanations, on a linear model whose least squares are known in closed form."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from support.recordings import NOMINAL, recording
 
-from pierburg_ros.inference.choice import Parabola, Score, predictor, ties
+from pierburg_ros.inference.choice import Parabola, Score, predictor, sure, ties
 from pierburg_ros.inference.data import data_of
-from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fitter, ladder
 
 PARAMETERS = ("armature_resistance", "torque_constant", "spring_preload")
@@ -61,3 +62,29 @@ def test_ties_keep_the_other_quantities(fitter):
     other = fitter.fit(Explanation(("torque_constant", "spring_preload")), NOMINAL.values, 0)
     apart = fitter.fit(Explanation(("torque_constant", "coulomb_friction")), NOMINAL.values, 0)
     assert ties(one, [one, other, apart]) == {"armature_resistance": (("torque_constant",),)}
+
+
+def leaving(fitter: Fitter, effects: tuple[str, ...], residual: np.ndarray):
+    """A fit with some effects that leaves a residual [noise], shape (samples,)."""
+    fit = fitter.fit(Explanation(), NOMINAL.values, 0)
+    return replace(
+        fit, explanation=Explanation((), tuple(Variant(effect, ()) for effect in effects)), residual=residual
+    )
+
+
+def test_of_two_effects_that_fit_alike_one_is_named_with_the_other_as_its_tie(fitter):
+    random = np.random.default_rng(0)
+    noise, wave = random.standard_normal((2, fitter.data.train.size))
+    described = leaving(fitter, (), noise + 5.0 * wave)
+    drag = leaving(fitter, ("drag",), noise + 1.5 * wave)
+    lag = leaving(fitter, ("sensor_lag",), np.roll(noise, 1) + 1.5 * wave)
+    worse = leaving(fitter, ("backlash",), noise + 4.9 * wave)
+    ((name, found),) = sure([described, drag, lag, worse]).items()
+    assert {name, found.instead} == {"drag", "sensor_lag"}
+    # one that is better than the other by far is named alone
+    better = leaving(fitter, ("drag",), noise + 0.3 * wave)
+    ((name, found),) = sure([described, better, lag, worse]).items()
+    assert (name, found.instead) == ("drag", None)
+    # what takes little is not named, alone or as one of two
+    little = leaving(fitter, ("drag",), noise + 4.8 * wave)
+    assert not sure([described, little, worse])

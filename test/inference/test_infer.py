@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recordings import NOMINAL, recording, recording_in_closed_loop
+from support.recordings import NOISE, NOMINAL, recording, recording_in_closed_loop
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.closed_loop import simulate_runs
+from pierburg_ros.control import Settings
 from pierburg_ros.inference.choice import Choice
 from pierburg_ros.inference.fit import rms_of
 from pierburg_ros.inference.infer import infer
@@ -101,6 +103,20 @@ def test_an_effect_that_equals_two_drifts_is_named_with_the_tie():
     choice = infer([recording({"viscous_friction.coefficient": 0.03})], NOMINAL).choice
     assert named(choice) == {"viscous_friction"}
     assert ("armature_resistance", "torque_constant") in choice.ties["viscous_friction"]
+
+
+def test_several_drifts_do_not_stand_for_an_effect():
+    # three other drifts, and drag, leave only noise too, and next to these static friction promises nothing
+    begins = np.array([0.0, 9.0, 12.0, 15.0, 18.0, 21.0, 23.0, 25.0, 27.0, 29.0, 31.0, 34.0])
+    setpoints = np.array([0.0, 0.35, 0.87, 1.22, 0.61, 1.05, 1.12, 0.98, 0.17, 0.24, 1.4, 0.0])
+    time = np.arange(0.0, 36.0, 0.002)
+    hidden = {"static_friction.breakaway_torque": 0.27, "static_friction.stribeck_velocity": 0.1}
+    valve, course = NOMINAL.with_values({**hidden, "spring_preload": 0.31}), np.searchsorted(begins, time, "right") - 1
+    run = simulate_runs(valve, Settings(), setpoints[course][np.newaxis], noise=NOISE)
+    rests = Recording("rests", "hall_voltage", time, run.hall_voltage[0], Channel(time, run.duty[0]))
+    choice = infer([rests], NOMINAL).choice
+    assert named(choice) == {"static_friction"}
+    assert choice.chosen.explanation.drifted == ("spring_preload",)
 
 
 def test_the_model_handed_out_predicts_best_of_all_that_were_fitted():
