@@ -135,6 +135,10 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         best = Score.of([*able, *alike]).best([*able, *alike], apart)
     best, dropped = needed(begun_again(best, search), pool)
     everything += [*dropped, *in_place(best, whole, parameters, search)]
+    if not explained:
+        # fits made since may doubt what seemed sure
+        named = sure(everything) | {name: each for name, each in named.items() if each.instead}
+        best = Score.of(everything).best([fit for fit in [best, *everything] if key(fit) <= named.keys()], apart)
     score = Score.of([best, *everything])
     own, others = names(best, everything, explained, named)
     handed = polished(last.fit(best.explanation, best.values))
