@@ -132,14 +132,15 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
         alike = [each for fit in beside for each in from_description(fit, search)]
         alike += fewest([described, *alike], parameters, search)
         everything += alike
-        best = Score.of([*able, *alike]).best([*able, *alike], apart)
+        able += alike
+        best = Score.of(able).best(able, apart)
     best, dropped = needed(begun_again(best, search), pool)
-    everything += [*dropped, *in_place(best, whole, parameters, search)]
+    everything += [best, *dropped, *in_place(best, whole, parameters, search)]
+    score = Score.of(everything)
     if not explained:
         # fits made since may doubt what seemed sure
         named = sure(everything) | {name: each for name, each in named.items() if each.instead}
-        best = Score.of(everything).best([fit for fit in [best, *everything] if key(fit) <= named.keys()], apart)
-    score = Score.of([best, *everything])
+        best = score.best([fit for fit in everything if key(fit) <= named.keys()], apart)
     own, others = names(best, everything, explained, named)
     handed = polished(last.fit(best.explanation, best.values))
     known = (last.fit(Explanation(), nominal.values, 0), *weakest)

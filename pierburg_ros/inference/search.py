@@ -20,7 +20,7 @@ from pierburg_ros.inference.explanation import WHEN, Explanation, Variant, jumps
 from pierburg_ros.inference.fit import Fit, Fitter, adequate, excess, ladder, strongest
 from pierburg_ros.inference.intervals import at_no_time_and_always, moment_ends
 from pierburg_ros.inference.least_squares import BRIEF
-from pierburg_ros.inference.shortlist import Promise, added, balanced, promises
+from pierburg_ros.inference.shortlist import Promise, added, balanced, distinct, promises
 from pierburg_ros.plant import Model
 
 Progress = Callable[[str], None]
@@ -102,7 +102,8 @@ def promising(fit: Fit, search: Search) -> list[Fit]:
 def to_the_end(several: Sequence[Fit], search: Search) -> list[Fit]:
     """The best of some short fits, one of each support, fitted until they gain no more, best first."""
     best = best_of_support(several)[:BEAM]
-    search.tell(f"{', '.join(map(label, best))}, to the end")
+    if best:
+        search.tell(f"{', '.join(map(label, best))}, to the end")
     return nearest(list(search.pool.map(lambda fit: fit.fitter.fit(fit.explanation, fit.values), best)))
 
 
@@ -135,7 +136,7 @@ def from_description(fit: Fit, search: Search) -> list[Fit]:
     if fitter.effort.over:
         return []
     search.tell(f"what may stand for the drifts beside {label(fit)}")
-    described = {**fit.values, **{name: fitter.nominal.values[name] for name in fit.explanation.drifted}}
+    described = {**fit.values, **undrifted(fit)}
 
     def one(candidate: tuple[Variant, list[dict[str, float]]]) -> Fit | None:
         variant, starts = candidate
@@ -150,6 +151,11 @@ def from_description(fit: Fit, search: Search) -> list[Fit]:
         if variant.effect not in fit.explanation.effects and EFFECT[variant.effect].ripple is None
     ]
     return list(filter(None, search.pool.map(one, others)))
+
+
+def undrifted(fit: Fit) -> dict[str, float]:
+    """The drifted parameters of a fit as they are described."""
+    return {name: fit.fitter.nominal.values[name] for name in fit.explanation.drifted}
 
 
 def begun_again(fit: Fit, search: Search) -> Fit:
@@ -168,10 +174,10 @@ def begun_again(fit: Fit, search: Search) -> Fit:
         if variant not in fit.explanation.variants or effect.mark is None:
             continue
         beside = [f"{effect.id}.{name}" for name in variant.free if name not in effect.strength]
-        several = (added(best.values, variant, start) for start in starts if beside)
-        begun += [{**best.values, **{name: values[name] for name in beside}} for values in several]
-    apart = [values for place, values in enumerate(begun) if values not in begun[:place]]
-    return min((best, *(fit.fitter.fit(fit.explanation, values) for values in apart)), key=lambda each: each.chi2)
+        formed = (added(best.values, variant, start) for start in starts if beside)
+        begun += [{**best.values, **{name: values[name] for name in beside}} for values in formed]
+    several = (fit.fitter.fit(fit.explanation, values) for values in distinct(begun))
+    return min((best, *several), key=lambda each: each.chi2)
 
 
 def described_or_balanced(fitter: Fitter, search: Search) -> dict[str, float]:
@@ -187,8 +193,7 @@ def fits_of(fit: Fit, promised: Sequence[Promise], search: Search) -> list[Fit]:
     Drifts begin as in the fit, by the balance, and as described, where a model can. Where events jump each of these may
     end elsewhere; otherwise the nearest does.
     """
-    fitter = fit.fitter
-    described = {name: fitter.nominal.values[name] for name in fit.explanation.drifted}
+    fitter, described = fit.fitter, undrifted(fit)
 
     def one(promise: Promise) -> Fit:
         explanation, begun = fit.explanation.plus(promise.variant), []

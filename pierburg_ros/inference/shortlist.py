@@ -230,8 +230,12 @@ def _told_by_rests(
     told, share = effect.at_rests([rest for motion in balance.motions for rest in motion.rests], values)
     if any(value < min(start[name] for start in starts) for name, value in told.items()):
         return starts, 0.0
-    several = [{**start, **told} for start in starts]
-    return [start for place, start in enumerate(several) if start not in several[:place]], share
+    return distinct([{**start, **told} for start in starts]), share
+
+
+def distinct(several: list[dict[str, float]]) -> list[dict[str, float]]:
+    """The first of each that are equal."""
+    return [each for place, each in enumerate(several) if each not in several[:place]]
 
 
 def added(values: Mapping[str, float], variant: Variant, start: Start) -> dict[str, float]:
