@@ -114,11 +114,12 @@ def motion_of(run: Run, actuator: Actuator, noise: float) -> Motion:
     interval = float(np.median(np.diff(run.time)))
     half = max(INSTANT * scales.time, 2.0 * interval)
     spread = noise * abs(per_unit)
-    # each end of the difference is a mean over the half window
-    slowest = max(STANDSTILL * scales.angle / scales.time, 5.0 * spread * math.sqrt(2.0 * interval / half) / half)
-    velocity = slope(run.time, angle, half)
     if run.quantity == "speed":
-        velocity, spread = decoded(nominal, run.measured, run.quantity), 0.0
+        velocity, off, spread = decoded(nominal, run.measured, run.quantity), spread, 0.0
+    else:
+        # each end of the difference is a mean over the half window
+        velocity, off = slope(run.time, angle, half), spread * math.sqrt(2.0 * interval / half) / half
+    slowest = max(STANDSTILL * scales.angle / scales.time, 5.0 * off)
     near = AT_STOP * scales.angle + 3.0 * spread
     place = np.searchsorted(run.inputs.time, run.time, side="right") - 1
     command = np.where(place < 0, 0.0, run.inputs.command[np.maximum(place, 0)])

@@ -53,7 +53,7 @@ RECORD: dict[Kind, str] = {
     "short": "Record a minute, with movements in both directions: less does not show what is rare or grows with time.",
     "slow_sampling": "Record with a shorter sample period: short delays and lags do not show.",
     "gaps": "Samples are missing: record on an idle machine, or with the recorder's queue made longer.",
-    "one_direction": "To tell friction from the load, record opening and closing over the same angles.",
+    "one_direction": "To tell friction from the load, record movements both ways over the same angles.",
     "little_travel": "To see what depends on the angle, record movements over the whole travel.",
     "closed_stop": "To see whether the closed stop gives and the sensor is right there, record a return to it at"
     " {input} 0, then press against it with negative {input}.",
@@ -80,8 +80,14 @@ class Limit:
         return RECORD[self.kind].format(input=self.input)
 
 
-def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks: Sequence[str] = ()) -> DataQuality:
-    """Sampling, saturation, stops and excitation of all `runs`, and the `remarks` on dirty ones.
+def data_quality(
+    runs: Sequence[Run],
+    actuator: Actuator,
+    noise: float,
+    limits: Sequence[Limit] = (),
+    remarks: Sequence[str] = (),
+) -> DataQuality:
+    """Sampling, saturation, stops and excitation of all `runs`, their `limits`, and the `remarks` on dirty ones.
 
     `noise` is the standard deviation of the noise, measured unit.
     """
@@ -98,7 +104,7 @@ def data_quality(runs: Sequence[Run], actuator: Actuator, noise: float, remarks:
         stops_touched=[end for end in ("closed", "open") if _touched(motions, end)],
         resolution=_resolution(runs),
         excited=excited(motions),
-        limits=[limit.finding for limit in limits_of(runs, actuator, noise)],
+        limits=[limit.finding for limit in limits],
         dirt=list(remarks),
     )
 
@@ -183,7 +189,8 @@ def _limits_of_reach(motions: Sequence[Motion]) -> list[Limit]:
         return []
     directions = {float(sign) for motion in moved for sign in np.sign(motion.velocity[motion.moving])}
     if len(directions) == 1:
-        way = "opens" if directions == {1.0} else "closes"
+        ways = ("opens", "closes") if moved[0].actuator.has_stops else ("goes forwards", "goes backwards")
+        way = ways[0] if directions == {1.0} else ways[1]
         limits.append(Limit("one_direction", f"The shaft only {way}: friction cannot be told from spring and load."))
     travel = _span(motions)
     if travel[1] - travel[0] < SHORT_TRAVEL * motions[0].scales.angle:

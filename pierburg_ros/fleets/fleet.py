@@ -17,7 +17,7 @@ from pierburg_ros.fleets.ageing.course import DAY, courses, is_strength, moment
 from pierburg_ros.fleets.page import fleet_page
 from pierburg_ros.fleets.recordings.units import sources
 from pierburg_ros.fleets.run import Examined, Report, Where, conduct
-from pierburg_ros.fleets.store import Store
+from pierburg_ros.fleets.store import RECORDINGS, Store
 from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows, require_parquet, write_parquet
 from pierburg_ros.fleets.task import Task
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
@@ -123,7 +123,7 @@ def fleet(
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     stated = checked_limits(limits or {}, nominal)
     found = sources(str(where), pattern)
-    task = Task(nominal, Budget.of(budget), time, signal_map(signals, topics or {}))
+    task = Task(nominal, Budget.of(budget), Path(output) / RECORDINGS, time, signal_map(signals, topics or {}))
     store = Store(Path(output))
     examined = conduct(found, task, store, Where(jobs, scheduler), progress or (lambda *_: None))
     made = fleet_of(examined, nominal, stated)

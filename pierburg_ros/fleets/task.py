@@ -16,13 +16,14 @@ from pierburg_ros.version import source_version
 
 @dataclass(frozen=True)
 class Task:
-    """The model, what a diagnosis may take, and how recordings are read: the clock and the signal map.
+    """The model, what a diagnosis may take, where results are kept, and how recordings are read: clock and signal map.
 
     `version` is that of the sources at the start.
     """
 
     nominal: Model
     budget: Budget
+    results: Path
     time: str | None = None
     signals: SignalMap = field(default_factory=SignalMap)
     version: str = field(default_factory=source_version)

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,7 @@ def examined(source: Source, task: Task, known: frozenset[str] = frozenset()) ->
             began = time.process_time()
             recording = task.read(path)
             found = diagnose(recording, model=task.nominal, jobs=1, budget=task.budget)
-            files = _files(found)
+            files = _files(found, task.results / key)
             result = {**_said(found, recording), "processor_time": time.process_time() - began}
             return Outcome(key, result, files)
     except (InputError, OSError) as error:
@@ -57,13 +58,14 @@ def examined(source: Source, task: Task, known: frozenset[str] = frozenset()) ->
         return Outcome(key, {"problem": one_line(f"the diagnosis failed: {type(error).__name__}: {error}")})
 
 
-def _files(found: Diagnosis) -> dict[str, str]:
-    """The files of a diagnosis, the report without the plotting library."""
+def _files(found: Diagnosis, folder: Path) -> dict[str, str]:
+    """The files of a diagnosis that is kept in a `folder`, the report without the plotting library."""
     from pierburg_ros.diagnosis.report.model_file import model_text
     from pierburg_ros.diagnosis.report.page import page
     from pierburg_ros.library.origin import origin
 
-    report = page(found.found, *origin(found.model.actuator, found.recordings), library_at=LIBRARY)
+    known = origin(found.model.actuator, found.recordings, folder / "model.yaml")
+    report = page(found.found, *known, library_at=LIBRARY)
     return {"diagnosis.json": found.to_json(), "model.yaml": model_text(found.found), "report.html": report}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,6 +20,7 @@ from pierburg_ros.inference.evidence import coarse_step, lasting_rounding
 from pierburg_ros.plant import Inputs, Model
 from pierburg_ros.plant.decode import angle_per_unit, encoded
 from pierburg_ros.recording import Recording
+from pierburg_ros.recording.loss import Span
 from pierburg_ros.recording.noise import noise_of
 
 BLOCK = 15.7
@@ -166,7 +168,14 @@ def data_of(recordings: Sequence[Recording], nominal: Model) -> Data:
         block = np.floor((before + recording.time) / length).astype(np.int64)
         runs.append(run_of(recording, nominal, number, block))
         before += recording.duration
-    return _of_runs(recordings, tuple(runs), nominal)
+    data = _of_runs(recordings, tuple(runs), nominal)
+    if (counted := int(np.count_nonzero(data.train))) < FIRST * CYCLE:
+        names = ", ".join(recording.name for recording in recordings)
+        raise InputError(
+            f"{names} leaves {counted} samples to fit, expected {FIRST * CYCLE} at least: in the rest its"
+            f" {actuator.input} is not known, or was not shortly before. Record again with fewer processes beside."
+        )
+    return data
 
 
 def all_fitted(recordings: Sequence[Recording], nominal: Model) -> Data:
@@ -206,7 +215,7 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
         # away from its stop only a command holds a shaft: the first one was in force before
         inputs = inputs.held_before()
     counts = np.ones(recording.time.size, dtype=bool)
-    for start, end in recording.unknown_input:
+    for start, end in unknown_spans(recording, actuator):
         counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
     settling = 0.0 if on_stop else min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
     return Run(
@@ -221,6 +230,25 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
         counts,
         actuator.quantity,
     )
+
+
+def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:
+    """Spans [s] in which messages of the input are missing, and it may have moved the shaft by more than the noise.
+
+    Not those that are shorter than the actuator's own time, if a step between the inputs before and after one, at any
+    moment in it, moves the shaft less.
+    """
+    scales, command = actuator.scales, recording.command
+    largest = float(np.max(np.abs(command.values), initial=0.0)) or 1.0
+    speed = scales.reading / scales.time if recording.quantity != "position" else scales.angle / scales.time
+    noise, found = noise_of(recording.time, recording.measured), []
+    for start, end in recording.unknown_input:
+        before, after = command.at(np.array([start, end]), before=0.0)
+        # a step at any moment: its mean is off by its size over the square root of 12
+        moved = speed * (end - start) * abs(after - before) / (math.sqrt(12.0) * largest)
+        if end - start > scales.time or moved > noise:
+            found.append((start, end))
+    return found
 
 
 def inputs_of(recording: Recording) -> Inputs:

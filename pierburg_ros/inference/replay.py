@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,34 +9,13 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Signal
 from pierburg_ros.errors import InputError
-from pierburg_ros.inference.data import FIRST, refuse_others, run_of
+from pierburg_ros.inference.data import FIRST, refuse_others, run_of, unknown_spans
 from pierburg_ros.inference.fit import beginning, inertia_time, pull_of
 from pierburg_ros.plant import Model
 from pierburg_ros.plant.decode import decoded
 from pierburg_ros.plant.following import Pull, follow
 from pierburg_ros.plant.simulate import refuse_unsimulated
 from pierburg_ros.recording import Recording
-from pierburg_ros.recording.loss import Span
-from pierburg_ros.recording.noise import noise_of
-
-
-def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:
-    """Spans [s] in which messages of the input are missing, and it may have moved the shaft by more than the noise.
-
-    Not those that are shorter than the actuator's own time, if a step between the inputs before and after one, at any
-    moment in it, moves the shaft less.
-    """
-    scales, command = actuator.scales, recording.command
-    largest = float(np.max(np.abs(command.values), initial=0.0)) or 1.0
-    speed = scales.reading / scales.time if recording.quantity != "position" else scales.angle / scales.time
-    noise, found = noise_of(recording.time, recording.measured), []
-    for start, end in recording.unknown_input:
-        before, after = command.at(np.array([start, end]), before=0.0)
-        # a step at any moment: its mean is off by its size over the square root of 12
-        moved = speed * (end - start) * abs(after - before) / (math.sqrt(12.0) * largest)
-        if end - start > scales.time or moved > noise:
-            found.append((start, end))
-    return found
 
 
 def parts_of(recording: Recording, actuator: Actuator) -> list[Recording]:

@@ -215,7 +215,7 @@ def read(
             begun, settled, rest = _settled(side, nominal, base, acting, values, variant, group)
             share = 1.0 - rest / max(float(left @ left), 1e-300)
             # where the balance takes no more of an effect than chance gives, its numbers are nothing to simulate
-            begun = begun if share > 1.0 / left.size else group
+            begun = begun if share * left.size > 1.0 else group
             readings.append(Reading(variant, begun, settled, share, at_rests))
     return inside, readings
 

@@ -12,9 +12,7 @@ from pierburg_ros.pages.provenance import provenance
 from pierburg_ros.recording import Recording
 
 
-def origin(
-    actuator: Actuator, recordings: Sequence[Recording], model: Path = Path("model.yaml")
-) -> tuple[list[tuple[str, str]], Sources]:
+def origin(actuator: Actuator, recordings: Sequence[Recording], model: Path) -> tuple[list[tuple[str, str]], Sources]:
     """What a page says of its origin, and how to name its recordings and its `model` file on a command line."""
     by_name = {recording.name: recording for recording in recordings}
     rows = provenance(actuator, {name: recording.path for name, recording in by_name.items()}, published)

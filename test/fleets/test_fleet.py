@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shlex
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -196,7 +197,11 @@ def test_recordings_are_diagnosed_once_and_a_bad_one_is_a_row(tmp_path):
     assert told.count(("diagnosing", 3, 3)) == 1
     reports = [row["report"] for row in first.rows("recordings")]
     assert reports[2] is None and all((tmp_path / "out" / report).exists() for report in reports[:2])
-    assert not (tmp_path / "out" / reports[0]).read_text().count("Plotly.js v")
+    page = (tmp_path / "out" / reports[1]).read_text()
+    assert not page.count("Plotly.js v")
+    replay = shlex.split(re.search(r"pierburg replay [^<]+", page)[0])
+    assert float(pr.Model.read(replay[replay.index("--model") + 1]).values["armature_resistance"]) > 4.4
+    assert replay[2] == first.recordings[1].source.path
     stamps = {path: path.stat().st_mtime_ns for path in (tmp_path / "out" / "recordings").rglob("*")}
     second = run()
     assert second.rows("recordings") == first.rows("recordings")

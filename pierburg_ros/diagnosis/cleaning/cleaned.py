@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags
 from pierburg_ros.diagnosis.cleaning.hum import hum
 from pierburg_ros.diagnosis.cleaning.outliers import outliers
 from pierburg_ros.diagnosis.cleaning.saturation import saturated
+from pierburg_ros.inference.data import unknown_spans
 from pierburg_ros.recording import Recording
 from pierburg_ros.recording.loss import Span, spans_of
 
@@ -34,11 +36,10 @@ class Cleaned:
     omissions: tuple[Omission, ...] = ()
     remarks: tuple[str, ...] = ()
 
-    @property
-    def left_out(self) -> list[tuple[float, float, str]]:
-        """Spans, from the first sample [s], that no model is compared with, each with the reason."""
+    def left_out(self, actuator: Actuator) -> list[tuple[float, float, str]]:
+        """Spans, from the first sample [s], that no model of an `actuator` is compared with, each with the reason."""
         first = float(self.recording.time[0])
-        unknown = [(*span, "the input is unknown there") for span in self.recording.unknown_input]
+        unknown = [(*span, "the input is unknown there") for span in unknown_spans(self.recording, actuator)]
         spans = (*unknown, *((*omission.span, omission.why) for omission in self.omissions))
         return [(start - first, end - first, why) for start, end, why in spans]
 
@@ -57,15 +58,16 @@ def _without_outliers(given: Cleaned, number: int) -> Cleaned:
     if not np.any(found):
         return given
     count, size = int(np.count_nonzero(found)), measured.size
-    what = f"{count} single samples ({100.0 * count / size:.2g} %) lie far off those around them"
+    many = "samples" if count > 1 else "sample"
+    what = f"{count} single {many} ({100.0 * count / size:.2g} %) far off those around"
     span = (float(time[found][0]), float(time[found][-1]))
-    remark = f"{what} and are left out: look at cable, connector and supply of the sensor."
+    remark = f"{what}, left out: look at cable, connector and supply of the sensor."
     return _added(given, ~found, (Omission(number, span, f"{what}: only these are left out"),), remark)
 
 
 def _without_saturation(given: Cleaned, number: int) -> Cleaned:
     time, measured = given.recording.time, given.recording.measured
-    found = saturated(time, measured)
+    found = saturated(time, measured, 0.0 if given.recording.quantity == "speed" else None)
     if not np.any(found):
         return given
     unit, ends = given.recording.unit, sorted({float(np.min(measured[found])), float(np.max(measured[found]))})

@@ -26,8 +26,10 @@ BESIDE = 4.0
 the noise is cut off. Derived: white noise goes further with probability 3e-5."""
 
 
-def saturated(time: Signal, measured: Signal) -> Flags:
+def saturated(time: Signal, measured: Signal, rest: float | None = None) -> Flags:
     """Which samples stand at the end of the converter's range, or so near that noise decides, shape (samples,).
+
+    A shaft that stands reads `rest`, where every standing shaft reads the same: that is no end of a range.
 
     The end is the highest or lowest value, if it repeats in a row far longer than noise repeats any other, and the
     reading comes to it or leaves it without slowing down: a shaft that dwells where it turns slows down before.
@@ -38,6 +40,8 @@ def saturated(time: Signal, measured: Signal) -> Flags:
         return found
     same = np.diff(measured) == 0.0
     for end in (values[0], values[-1]):
+        if rest is not None and abs(end - rest) <= BESIDE * noise:
+            continue
         runs = _runs(measured == end)
         longest = max(runs, key=lambda run: run[1] - run[0])
         if longest[1] - longest[0] >= _by_chance(same[measured[1:] != end], measured.size) and _cut(measured, longest):

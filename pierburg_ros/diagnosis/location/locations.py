@@ -129,8 +129,8 @@ def _way(motion: Motion, sample: int) -> str:
 
 def _near(motion: Motion, inside: NDArray[np.intp]) -> str:
     if motion.actuator.quantity == "speed":
-        lowest, highest = (float(f(motion.velocity[inside])) for f in (np.min, np.max))
-        return f"at {lowest:.3g} to {highest:.3g} {motion.actuator.unit}"
+        ends = dict.fromkeys(f"{f(motion.velocity[inside]):.3g}" for f in (np.min, np.max))
+        return f"at {' to '.join(ends)} {motion.actuator.unit}"
     lowest, highest = (float(f(motion.angle[inside])) for f in (np.min, np.max))
     if highest - lowest < PLACE * motion.scales.angle:
         middle = (lowest + highest) / 2

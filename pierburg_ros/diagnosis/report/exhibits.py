@@ -51,5 +51,5 @@ def _view(found: Found, run: Run, errors: Mapping[str, Signal], cleaned: Cleaned
         angle=motion.angle,
         velocity=motion.velocity,
         errors=dict(errors),
-        left_out=tuple(cleaned.left_out),
+        left_out=tuple(cleaned.left_out(found.data.actuator)),
     )

@@ -58,7 +58,11 @@ def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
     actuator, runs = data.actuator, data.runs
     named, parameters_found = effects(found), parameters(found)
     fit, changed, hidden = fit_quality(found), changes(found), not_testable(found)
-    short = quality.limits_of(runs, actuator, data.noise)
+    short = [
+        limit
+        for limit in quality.limits_of(runs, actuator, data.noise)
+        if limit.kind != "slow_sampling" or not short_times_show(found)
+    ]
     places, ranges = located(found)
     left = remaining(found)
     remarks = [*data.warnings, *(f"{each.recording.name}: {remark}" for each in cleaned for remark in each.remarks)]
@@ -87,12 +91,22 @@ def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
         not_testable=hidden,
         ruled_out=[ruled_out(each.limit, found) for each in found.seen.values() if each.limit is not None],
         remaining=left,
-        excluded=excluded(cleaned),
+        excluded=excluded(cleaned, actuator),
         cannot_act=cannot_act(found.data),
         residual_torque=remains.document(found.model, found.lacking, left.looks_like),
-        data_quality=quality.data_quality(runs, actuator, data.noise, remarks),
+        data_quality=quality.data_quality(runs, actuator, data.noise, short, remarks),
         advice=words.advice(found, named, parameters_found, hidden, short),
     )
+
+
+def short_times_show(found: Found) -> bool:
+    """Whether a limit is told of every effect whose strength is a time, so that sampling hides none of them."""
+    timed = [
+        each.limit
+        for effect, each in found.seen.items()
+        if all(EFFECT[effect].parameter(name).unit == "s" for name in EFFECT[effect].strength)
+    ]
+    return bool(timed) and None not in timed
 
 
 def verdict(found: Found) -> Verdict:
@@ -324,12 +338,12 @@ def remaining(found: Found) -> Remaining:
     return Remaining(share=found.shares.remains, looks_like=remains.in_words(forms, found.lacking), shapes=forms)
 
 
-def excluded(cleaned: Sequence[Cleaned]) -> list[Excluded]:
+def excluded(cleaned: Sequence[Cleaned], actuator: Actuator) -> list[Excluded]:
     """The spans of every recording that were left out."""
     return [
         Excluded(start=start, end=end, why=f"{each.recording.name}: {why}")
         for each in cleaned
-        for start, end, why in each.left_out
+        for start, end, why in each.left_out(actuator)
     ]
 
 

@@ -7,7 +7,10 @@ from support.recordings import PIERBURG
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.diagnosis.found import Share, Shares
+from pierburg_ros.diagnosis.limits import Limit as Strongest
+from pierburg_ros.diagnosis.limits import Seen
 from pierburg_ros.diagnosis.quality import Limit
+from pierburg_ros.diagnosis.report.findings import short_times_show
 from pierburg_ros.diagnosis.report.words import (
     advice,
     cautioned,
@@ -204,3 +207,12 @@ def test_what_decides_nothing_is_said_before_anything_else() -> None:
     still = Limit("no_movement", "The shaft never moves.", decisive=True)
     assert cautioned([still], "All is well.") == "Nothing can be concluded: The shaft never moves. All is well."
     assert cautioned([Limit("short", "5 s only.")], "All is well.") == "All is well."
+
+
+@pytest.mark.parametrize(
+    ("limits", "show"),
+    [({"input_delay": 3e-5, "sensor_lag": 2e-4, "backlash": None}, True), ({"input_delay": None}, False)],
+)
+def test_slow_sampling_hides_no_short_time_that_has_a_limit(limits, show) -> None:
+    seen = {effect: Seen(value and Strongest(effect, "delay", value, False), 0.0) for effect, value in limits.items()}
+    assert short_times_show(SimpleNamespace(seen=seen)) is show
