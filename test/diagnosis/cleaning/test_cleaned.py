@@ -97,6 +97,14 @@ def test_what_is_clean_is_the_same_recording():
     assert found.recording is ONE and found.omissions == () and found.remarks == ()
 
 
+def test_a_motor_that_starts_at_once_was_no_converter_at_its_end():
+    """An encoder's speed has noise while it turns, and none at rest."""
+    speed = np.where(ONE.time < 3.0, 0.0, 20.0 + 0.2 * np.random.default_rng(1).standard_normal(ONE.time.size))
+    assert saturated(ONE.time, speed).any()
+    given = replace(ONE, measured=speed, quantity="speed")
+    assert cleaned(given).recording is given
+
+
 def test_each_is_said_with_what_is_left_out():
     measured, _ = spiked(0.01)
     given = replace(ONE, measured=measured + 0.01 * np.sin(100.0 * np.pi * ONE.time))

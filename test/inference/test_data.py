@@ -1,0 +1,33 @@
+"""Recordings as a fit uses them: which samples count, and what is too little to fit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.recordings import data_on, recording
+
+from pierburg_ros.errors import InputError
+from pierburg_ros.recording.loss import Loss
+
+LOGGED = recording({})
+
+
+def paused(every: float, length: float):
+    """The recording with its duty unknown for a `length` [s] in each `every` [s], its samples missing there too."""
+    spans = tuple((start, start + length) for start in np.arange(0.02, LOGGED.time[-1], every).tolist())
+    kept = np.ones(LOGGED.time.size, dtype=bool)
+    for start, end in spans:
+        kept &= (LOGGED.time <= start) | (LOGGED.time >= end)
+    lost = Loss("duty", None, LOGGED.command.time.size, spans)
+    return replace(LOGGED, time=LOGGED.time[kept], measured=LOGGED.measured[kept], losses=(lost,))
+
+
+def test_pauses_in_which_the_shaft_cannot_be_moved_leave_all_samples():
+    """A logger that writes for 2 ms in each 40 ms: the duty before and after is the same but where it steps."""
+    logged = paused(0.04, 0.002)
+    assert np.mean(data_on(logged).counts) > 0.7 and np.mean(data_on(LOGGED).counts) > 0.95
+
+
+def test_where_the_duty_is_hardly_known_nothing_is_fitted():
+    with pytest.raises(InputError, match="leaves 10 samples to fit, expected 64 at least: in the rest its duty is not"):
+        data_on(paused(0.5, 0.45))
