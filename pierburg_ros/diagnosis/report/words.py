@@ -39,6 +39,12 @@ HELD = "measure one of them by other means"
 HOLD = "Hold what was measured: its value as nominal with `free: false` in the actuator's description."
 """The advice for a number that was measured by other means."""
 
+FAR_OFF = (
+    "Correct {names} in the description, where the fit ends on a bound of the search: the numbers are far off, or stand"
+    " for missing physics. 'pierburg actuator new --from-recording' finds what a recording tells."
+)
+"""The advice for numbers that end on a bound."""
+
 
 def quantity(name: str, estimate: Estimate | BaseParameter) -> str:
     """A value with its interval, for a sentence."""
@@ -196,6 +202,8 @@ def advice(
     """What to record next, most useful first."""
     stops = found.data.actuator.has_stops
     steps = [limit.record for limit in limits]
+    if bound := [name for name, parameter in parameters.items() if parameter.at_bound]:
+        steps.insert(0, FAR_OFF.format(names=_listed(bound)))
     for effect in effects:
         for tie in effect.indistinguishable_from:
             steps.append(_separating(effect.id, tie, stops))

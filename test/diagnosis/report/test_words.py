@@ -194,6 +194,13 @@ def test_advice_tells_ties_apart_and_shows_what_is_hidden_each_once() -> None:
     assert len(steps) == 3
 
 
+def test_advice_begins_with_numbers_of_a_description_that_is_far_off() -> None:
+    far = {"spring_preload": spring(at_bound=True)}
+    steps = advice(found("unexplained"), [], far, [], [Limit("short", "")])
+    assert steps[0].startswith("Correct spring preload in the description, where the fit ends on a bound of the search")
+    assert len(steps) == 3
+
+
 def test_advice_sends_nobody_to_stops_that_are_not_there() -> None:
     drifted = {"spring_preload": spring(indistinguishable_from=[["gravity_torque"]])}
     with_stops, without = (
