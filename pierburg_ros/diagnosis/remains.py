@@ -166,7 +166,7 @@ WAYS = {"both": "", "positive": ", when the angle grows", "negative": ", when th
 def in_words(found: Sequence[RemainingShape], at: Lacking) -> str:
     """The size of the missing torque and what it goes with."""
     if at.torque.size == 0:
-        return "the shaft hardly moves, so no missing torque can be read from its motion"
+        return "not known: between stops and pauses the shaft hardly moves, so its motion tells no missing torque"
     size = float(np.sqrt(np.mean(np.square(at.alone))))
     listed = "; ".join(
         f"{percent(each.share)} of it {FORM[each.over, each.form]}{WAYS[each.direction]}" for each in found

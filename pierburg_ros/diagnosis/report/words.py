@@ -18,7 +18,7 @@ from pierburg_ros.diagnosis.schema import (
     Remaining,
 )
 from pierburg_ros.effects import EFFECT
-from pierburg_ros.inference.choice import Name
+from pierburg_ros.inference.choice import Name, least
 from pierburg_ros.inference.evidence import SIGNIFICANT
 from pierburg_ros.pages import numbers
 
@@ -140,10 +140,17 @@ def summary(
     if verdict != "unexplained":
         return f"{begun}The model lacks {listed}. {named}{also} {errors}"
     helped = f" Part of it is {listed}. {named}" if effects else ""
-    maybe = ", ".join(f"{numbers.words(each.id)} ({numbers.percent(each.confidence)})" for each in unsure)
-    not_sure = f" Not sure enough to be named: {maybe}." if maybe else ""
+    able, doubtful = (
+        [each for each in unsure if ((each.confidence or 0.0) >= least(each.id)) is sure] for sure in (True, False)
+    )
+    spare = f" Sure enough by itself, but not needed beside the rest: {_with_confidence(able)}." if able else ""
+    not_sure = f" Not sure enough to be named: {_with_confidence(doubtful)}." if doubtful else ""
     rest = f"What remains is {left.looks_like}."
-    return f"{begun}An error remains that no effect explains.{helped}{also}{not_sure} {rest} {errors}"
+    return f"{begun}An error remains that no effect explains.{helped}{also}{spare}{not_sure} {rest} {errors}"
+
+
+def _with_confidence(unsure: Sequence[Doubted]) -> str:
+    return ", ".join(f"{numbers.words(each.id)} ({numbers.percent(each.confidence)})" for each in unsure)
 
 
 def stopped(found: Found) -> str:

@@ -100,11 +100,12 @@ def test_an_effect_is_believed_for_a_reason_with_its_numbers(rival: Explanation,
 def test_what_is_not_sure_enough_is_told_with_its_probability() -> None:
     unsure = [
         Doubted(id=effect, confidence=sure, explanation="")
-        for effect, sure in (("backlash", 0.43), ("sensor_lag", 0.081))
+        for effect, sure in (("drag", 0.97), ("backlash", 0.43), ("sensor_lag", 0.081))
     ]
     text = said("unexplained", left=LEFT, unsure=unsure)
     assert text.startswith(
-        "An error remains that no effect explains. Not sure enough to be named: backlash (43 %), sensor lag (8.1 %). "
+        "An error remains that no effect explains. Sure enough by itself, but not needed beside the rest: drag (97 %). "
+        "Not sure enough to be named: backlash (43 %), sensor lag (8.1 %). "
         "What remains is a torque that grows with the square of the speed. "
     )
     assert "Not sure" not in said("unexplained", left=LEFT)
