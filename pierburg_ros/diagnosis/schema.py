@@ -77,12 +77,12 @@ class Effect(Part):
 
 
 class Doubted(Part):
-    """An effect that gains something, but is not probable enough to be named."""
+    """An effect that gains something, but is not probable enough to be named, or not needed beside what is."""
 
     id: str
     """Name in the catalogue."""
     confidence: Number
-    """0 to 1: how probable the effect is; named ones have more."""
+    """0 to 1: how probable the effect is by itself."""
     share: Number = None
     """Of the mismatch of the model as described, what it explains beside re-estimated parameters, 0 to 1."""
     parameters: dict[str, Estimate] = {}
