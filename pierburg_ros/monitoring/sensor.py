@@ -9,7 +9,7 @@ import numpy as np
 
 from pierburg_ros.monitoring.evidence import predicted
 from pierburg_ros.monitoring.findings import Finding
-from pierburg_ros.monitoring.movements import BLOCK_SAMPLES, Samples
+from pierburg_ros.monitoring.movements import BLOCK_SAMPLES, Samples, Signal
 from pierburg_ros.plant import Model
 
 FROZEN = 4
@@ -64,10 +64,10 @@ class SensorWatch:
             self._blocks.clear()
             return []
         self._blocks.append(block)
-        frozen = self._frozen(block)
-        found = [frozen, self._noisier(block), self._jumps(block)]
+        frozen, course = self._frozen(block), self._course(block, supply)
+        found = [frozen, self._noisier(block, course), self._jumps(block)]
         if frozen is None:
-            found.append(self._unmoved(block, supply))
+            found.append(self._unmoved(block, course))
         if self._asleep == 0:
             found.append(self._offset(supply))
         return [finding for finding in found if finding is not None]
@@ -94,8 +94,9 @@ class SensorWatch:
             return None
         return _fault("frozen", f"sensor frozen at {block.angle[-1]:.4g} rad", self._blocks)
 
-    def _noisier(self, block: Samples) -> Finding | None:
-        self._noises.append(math.sqrt(float(np.mean(np.diff(block.angle, 2) ** 2)) / 6.0))
+    def _noisier(self, block: Samples, course: Signal) -> Finding | None:
+        # what the duty makes the shaft do is no noise, as where a loop hunts
+        self._noises.append(math.sqrt(float(np.mean(np.diff(block.angle - course, 2) ** 2)) / 6.0))
         if len(self._learnt) < BASELINE:
             self._learnt.append(self._noises[-1])
             return None
@@ -116,19 +117,22 @@ class SensorWatch:
         text = f"sensor jumps faster than the shaft can turn, in {sum(self._spikes)} of the last {SPIKE_MEMORY} blocks"
         return _fault("spikes", text, self._blocks)
 
-    def _unmoved(self, block: Samples, supply: float) -> Finding | None:
+    def _course(self, block: Samples, supply: float) -> Signal:
+        """The angle [rad] that the model has under the duty of the block, shape (samples,), from where it begins."""
         start = float(np.mean(block.angle[: BLOCK_SAMPLES // 5]))
         if self._held(block, start, supply):
-            self._asleep = 0
-            return None
-        travel = abs(float(predicted(self._supplied(supply), block, start, supply)[-1]) - start)
+            return np.full(block.angle.size, start)
+        course = predicted(self._supplied(supply), block, start, supply)
+        if course[-1] == start:
+            self._hold = (start, supply, float(np.min(block.duty)), float(np.max(block.duty)))
+        return course
+
+    def _unmoved(self, block: Samples, course: Signal) -> Finding | None:
+        start, noise = float(np.mean(block.angle[: BLOCK_SAMPLES // 5])), self.usual_noise
+        travel = abs(float(course[-1]) - start)
         moved = abs(float(np.mean(block.angle[-BLOCK_SAMPLES // 5 :])) - start)
-        noise = self.usual_noise
         missing = noise > 0.0 and travel > ASLEEP * noise and moved < SEEN_SHARE * travel
         self._asleep = self._asleep + 1 if missing else 0
-        if travel == 0.0:
-            low, high = float(np.min(block.duty)), float(np.max(block.duty))
-            self._hold = (start, supply, low, high)
         if self._asleep < TWICE:
             return None
         text = (

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from pierburg_ros.actuators import read_actuator
+from pierburg_ros.closed_loop import simulate_runs
+from pierburg_ros.control import Settings
 from pierburg_ros.monitoring.movements import BLOCK_SAMPLES, Blocks, Samples
 from pierburg_ros.monitoring.sensor import SensorWatch
 from pierburg_ros.plant import Model
+from pierburg_ros.plant.decode import decoded
 
 NOISE = 0.0012  # rad
 MODEL = Model.nominal(read_actuator("pierburg"))
@@ -75,3 +78,14 @@ def test_an_angle_that_stays_while_the_duty_drives_the_shaft_is_named():
 
 def test_nothing_is_said_before_the_usual_noise_is_known():
     assert not any(names(0.8 + noise(5.0), np.full(2500, 0.6)))
+
+
+def test_a_loop_that_begins_to_hunt_is_no_noise_of_the_sensor():
+    """With 10 ms on the way to the valve the duty answers noise too late, and the shaft shakes by twice the noise."""
+    setpoints = np.radians([35.0, 45.0, 55.0, 45.0])[np.arange(15_000) // 750 % 4]
+    models = [MODEL.with_values({"input_delay.delay": late}) for late in (0.0, 0.01)]
+    parts = [simulate_runs(model, Settings(), setpoints[np.newaxis], noise=0.003) for model in models]
+    angle = decoded(MODEL, np.concatenate([part.hall_voltage[0] for part in parts]))
+    duty = np.concatenate([parts[0].duty[0], np.zeros(5), parts[1].duty[0][:-5]])
+    assert np.std(np.diff(angle[15_000:], 2)) > 2.0 * np.std(np.diff(angle[:15_000], 2))
+    assert not any("noise" in found for found in names(angle, duty))
