@@ -284,8 +284,8 @@ def followed(fits: Iterable[Fit], pool: Executor) -> list[Fit]:
 def led(fit: Fit, constants: Iterable[float]) -> Fit:
     """The same explanation fitted with each of the `constants` [s] of the pull, one after the other."""
     for constant in constants:
-        fit = dated_again(fit.fitter.pulled(constant).fit(fit.explanation, fit.values))
-    return fit
+        fit = fit.fitter.pulled(constant).fit(fit.explanation, fit.values)
+    return dated_again(fit)
 
 
 def dated_again(fit: Fit) -> Fit:
