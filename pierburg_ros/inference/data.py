@@ -55,9 +55,9 @@ FEWEST_SAMPLES = 200
 class Run:
     """One recording, ready to be simulated, `measured` in the unit of the actuator's sensor.
 
-    `shown` is where it begins, as `plant.decode.begun` reads it; from `settled` [s] on a pulled simulation has
-    forgotten what of that is not known. `block` is the number of the block of each sample and `counts` whether it
-    counts, both shape (samples,): not where the input is unknown. `number` counts recordings.
+    `shown` is where it begins, as `plant.decode.begun` reads it. `block` is the number of the block of each sample,
+    `counts` whether its input is known, and `settled` whether a pulled simulation has forgotten what was not known at
+    the beginning, or after an unknown input, all shape (samples,). `number` counts recordings.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Run:
     time: Signal
     measured: Signal
     shown: Signal
-    settled: float
+    settled: Flags
     block: NDArray[np.int64]
     counts: Flags
     quantity: str
@@ -135,7 +135,7 @@ class Data:
     @cached_property
     def counts(self) -> Flags:
         """Whether each sample of all runs counts: not before a simulation has settled."""
-        return np.concatenate([run.counts & (run.time >= run.settled) for run in self.runs])
+        return np.concatenate([run.counts & run.settled for run in self.runs])
 
     def by_run(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all samples, shape (samples,), one array for each run."""
@@ -214,10 +214,14 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
     if not on_stop and actuator.load != "none":
         # away from its stop only a command holds a shaft: the first one was in force before
         inputs = inputs.held_before()
+    own, settling = actuator.scales.time, min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
     counts = np.ones(recording.time.size, dtype=bool)
+    settled = recording.time >= recording.time[0] + (0.0 if on_stop else settling)
     for start, end in unknown_spans(recording, actuator):
-        counts &= (recording.time < start) | (recording.time > end + actuator.scales.time)
-    settling = 0.0 if on_stop else min(SETTLING_TIMES * actuator.scales.time, recording.duration / CYCLE)
+        counts &= (recording.time < start) | (recording.time > end + own)
+        # after longer than the shaft remembers no more is known of it than at a beginning
+        lost = settling if end - start > own else own
+        settled &= (recording.time < start) | (recording.time > end + lost)
     return Run(
         recording.name,
         number,
@@ -225,7 +229,7 @@ def run_of(recording: Recording, nominal: Model, number: int, block: NDArray[np.
         recording.time,
         measured,
         shown,
-        recording.time[0] + settling,
+        settled,
         block,
         counts,
         actuator.quantity,

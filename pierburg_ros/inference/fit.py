@@ -191,8 +191,7 @@ class Fitter:
         inertial = inertia_time(self.nominal) > self.data.period and self.data.actuator.quantity != "speed"
         first = min(ladder(self.data)[0], self.constant)
         return tuple(
-            Pull.every(run.time, np.where(run.time < run.settled, first, self.constant), inertial)
-            for run in self.data.runs
+            Pull.every(run.time, np.where(run.settled, self.constant, first), inertial) for run in self.data.runs
         )
 
     @cached_property

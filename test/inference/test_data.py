@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recordings import data_on, recording
+from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.errors import InputError
+from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.fit import Fitter, ladder
+from pierburg_ros.recording import Channel
 from pierburg_ros.recording.loss import Loss
 
 LOGGED = recording({})
@@ -26,6 +29,17 @@ def test_pauses_in_which_the_shaft_cannot_be_moved_leave_all_samples():
     """A logger that writes for 2 ms in each 40 ms: the duty before and after is the same but where it steps."""
     logged = paused(0.04, 0.002)
     assert np.mean(data_on(logged).counts) > 0.7 and np.mean(data_on(LOGGED).counts) > 0.95
+
+
+def test_after_a_pause_a_fit_begins_anew():
+    """Two seconds in which the duty changed: a shaft that is elsewhere after it is no error of the model."""
+    kept = (LOGGED.time <= 9.0) | (LOGGED.time >= 11.0)
+    lost = Loss("duty", None, LOGGED.command.time.size, ((9.0, 11.0),))
+    duty = Channel(LOGGED.time[kept], LOGGED.command.values[kept])
+    paused = replace(LOGGED, time=LOGGED.time[kept], measured=LOGGED.measured[kept], command=duty, losses=(lost,))
+    data = data_on(paused)
+    for constant in ladder(data):
+        assert Fitter(data, NOMINAL, constant).fit(Explanation(), NOMINAL.values, 0).ratio < 1.02
 
 
 def test_where_the_duty_is_hardly_known_nothing_is_fitted():

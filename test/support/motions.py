@@ -31,7 +31,7 @@ def run_along(corners=CORNERS, duty=None, rate: float = 500.0, seed: int = 0) ->
         time=time,
         measured=measured,
         shown=start_of(time, measured),
-        settled=0.0,
+        settled=np.ones(time.size, dtype=bool),
         block=np.zeros(time.size, dtype=np.int64),
         counts=np.ones(time.size, dtype=bool),
         quantity="hall_voltage",
