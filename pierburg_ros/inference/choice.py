@@ -162,7 +162,8 @@ def chosen(fits: Sequence[Fit], parameters: Sequence[str], search: Search) -> Ch
 class Score:
     """Minus twice the log likelihood in effective samples, from the `least` chi2 on, and the price of a quantity.
 
-    `rounded` is the squared error that a coarse converter makes beside: what is far below it tells nothing.
+    `rounded` is the squared error that a coarse converter makes beside, and by which correct simulators differ: what is
+    far below it tells nothing.
     """
 
     effective: float
@@ -178,7 +179,8 @@ class Score:
         (Schwarz, Estimating the dimension of a model, 1978).
         """
         least = min(fits, key=lambda fit: fit.chi2)
-        effective, rounded = least.fitted.size / least.repetition, least.fitted.size * least.rounding
+        effective = least.fitted.size / least.repetition
+        rounded = least.fitted.size * (least.rounding + least.fitter.unlike**2)
         price = SIGNIFICANT if adequate(least) else math.log(max(effective, math.e))
         return Score(effective, least.chi2, rounded, price)
 

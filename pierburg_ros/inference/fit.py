@@ -24,7 +24,7 @@ from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.budget import USUAL_BUDGET, Budget, OutOfTime
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.coordinates import Coordinates, in_order
-from pierburg_ros.inference.data import Data, Run
+from pierburg_ros.inference.data import FORMULATION, Data, Run
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, beyond, repetition, structure
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
 from pierburg_ros.inference.least_squares import FULL, Solution, jacobian, minimise
@@ -282,12 +282,6 @@ class Fitter:
 
         point = coordinates.point(fit.values)
         return jacobian(fitted, point, fitted(point), *coordinates.bounds, coordinates.steps)
-
-
-FORMULATION = 7.3e-5
-"""Root mean square difference, as a share of the reading over the travel, between simulations of one effect that are
-all correct. Derived: 0.3 mV of the valve's Hall voltage, the largest change over all effects if steps of 5 us replace
-10 in the textbook form."""
 
 
 def ladder(data: Data) -> tuple[float, ...]:
