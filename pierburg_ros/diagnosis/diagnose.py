@@ -8,6 +8,7 @@ from pierburg_ros.audit import audit
 from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.diagnosis.cleaning.cleaned import cleaned
 from pierburg_ros.diagnosis.found import found
+from pierburg_ros.diagnosis.quality import untelling
 from pierburg_ros.diagnosis.report.exhibits import exhibits
 from pierburg_ros.diagnosis.report.findings import document, signals
 from pierburg_ros.diagnosis.report.refusal import refusal
@@ -33,12 +34,12 @@ def diagnose(
 
     `progress` is given what is being tried. Where the `budget` is spent, or after Ctrl-C, the result is the best
     verdict so far, marked as such. If recordings of the user's own `simulation` are given, these replace the nominal
-    model: `nominal` is fitted to them first. If signals are not what they are read as, only that is reported, unless
-    `force` is set. InputError if the recordings cannot be used.
+    model: `nominal` is fitted to them first. If signals are not what they are read as, or tell nothing of the physics,
+    only that is reported, unless `force` is set. InputError if the recordings cannot be used.
     """
     each_cleaned = [cleaned(recording, number) for number, recording in enumerate(recordings)]
     recordings = [each.recording for each in each_cleaned]
-    if faults := [] if force else audit(recordings, nominal):
+    if faults := [] if force else audit(recordings, nominal) or untelling(recordings, nominal):
         return refusal(recordings, nominal, faults)
     simulator = reproduction(simulation, recordings, nominal, progress, jobs) if simulation else None
     own, unlike = (simulator.model, simulator.left) if simulator else (nominal, 0.0)

@@ -12,9 +12,12 @@ import numpy as np
 from pierburg_ros.actuators import Actuator
 from pierburg_ros.actuators.wording import place
 from pierburg_ros.arrays import Flags
+from pierburg_ros.audit import Fault
 from pierburg_ros.diagnosis.motion import INSTANT, Motion, motion_of
 from pierburg_ros.diagnosis.schema import DataQuality
-from pierburg_ros.inference.data import GAP, Run
+from pierburg_ros.inference.data import GAP, Run, data_of
+from pierburg_ros.plant import Model
+from pierburg_ros.recording import Recording
 
 Kind = Literal[
     "no_movement",
@@ -120,6 +123,14 @@ def limits_of(runs: Sequence[Run], actuator: Actuator, noise: float) -> list[Lim
     return [replace(limit, input=actuator.input) for limit in limits]
 
 
+def untelling(recordings: Sequence[Recording], nominal: Model) -> list[Fault]:
+    """What prevents every conclusion about the physics, none where nothing does; InputError if they cannot be used."""
+    data = data_of(recordings, nominal)
+    names, told = ", ".join(recording.name for recording in recordings), "tells nothing of the physics"
+    limits = [limit for limit in limits_of(data.runs, nominal.actuator, data.noise) if limit.decisive]
+    return [Fault(names, limit.input, told, limit.finding, limit.record) for limit in limits]
+
+
 def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: float) -> list[Limit]:
     limits = []
     command, driven_by = np.concatenate([motion.command for motion in motions]), motions[0].actuator.input
@@ -139,7 +150,7 @@ def _limits_of_movement(motions: Sequence[Motion], runs: Sequence[Run], noise: f
             Limit(
                 "constant_duty",
                 f"The {driven_by} is {command[0]:.3g} throughout: motor, friction and spring cannot be told apart.",
-                decisive=True,
+                decisive=not any(motion.reversals.size for motion in motions),
             )
         )
     full = float(np.mean(np.concatenate([_at_limit(motion) for motion in motions])))

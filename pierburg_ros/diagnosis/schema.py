@@ -352,7 +352,7 @@ class Simulation(Part):
 
 
 class InputFault(Part):
-    """A signal that is not what it is read as."""
+    """A signal that is not what it is read as, or that tells nothing of the physics."""
 
     recording: str
     signal: str
@@ -412,7 +412,7 @@ class Diagnosis(Part):
     """Only with the verdict "unexplained"."""
     data_quality: DataQuality
     input_faults: list[InputFault] = []
-    """Signals that are not what they are read as; where there are any, nothing is concluded."""
+    """Signals that are not what they are read as, or tell nothing; where there are any, nothing is concluded."""
     advice: list[str] = []
     """What to record next to settle what these recordings cannot."""
 

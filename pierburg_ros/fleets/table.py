@@ -30,7 +30,7 @@ COLUMNS: dict[str, dict[str, tuple[str, str]]] = {
         "verdict": ("string", "consistent, parameter_drift, missing_physics or unexplained"),
         "effects": ("strings", "effects that the diagnosis names"),
         "drifted": ("strings", "base parameters that it changes"),
-        "faults": ("strings", "signals that are not what they are read as; then nothing is concluded"),
+        "faults": ("strings", "signals that are not what they are read as, or tell nothing; then nothing is concluded"),
         "stopped": ("bool", "whether time was over before all was tried"),
         "summary": ("string", "one paragraph that a technician can read"),
         "duration": ("double", "[s]"),

@@ -85,6 +85,17 @@ def test_signals_that_are_not_what_they_are_read_as_are_refused_with_the_line_th
     assert refused.model is NOMINAL
 
 
+def test_a_motor_that_is_not_plugged_in_tells_nothing_and_gets_no_verdict() -> None:
+    """Its sensor has noise, and the duty swings: what does not move shows no physics, and no drift of it."""
+    alive = recording({}, 12.0)
+    still = np.full(alive.time.size, 0.42) + NOISE * np.random.default_rng(3).standard_normal(alive.time.size)
+    refused = diagnose([replace(alive, measured=still)], NOMINAL)
+    document = refused.diagnosis
+    assert document.verdict == "unexplained" and not document.effects and not drifted(document)
+    assert "The shaft never moves" in document.input_faults[0].evidence and document.effort.simulations == 0
+    assert document.advice[0].endswith("large enough to move the shaft both ways.") and refused.model is NOMINAL
+
+
 @pytest.mark.search
 def test_what_is_forced_is_concluded() -> None:
     right = recording({}, 6.0)

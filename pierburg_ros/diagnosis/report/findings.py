@@ -76,7 +76,7 @@ def document(found: Found, cleaned: Sequence[Cleaned]) -> Diagnosis:
         input=actuator.input,
         motion=actuator.motion,
         verdict=verdict(found),
-        summary=" ".join([*remarks, words.cautioned(short, text)]),
+        summary=" ".join([*remarks, text]),
         model_of=found.model_of,
         effort=effort(found),
         effects=named,

@@ -31,7 +31,7 @@ VERDICTS = {
     "unexplained": "an error remains that is not explained",
 }
 """The meaning of each verdict."""
-NOTHING = "nothing is concluded: the signals are not what they are read as"
+NOTHING = "nothing is concluded: signals are not what they are read as, or tell nothing"
 """The meaning of a verdict where the input is at fault."""
 ANGULAR = {"rad": "degrees", "rad/s": "degrees/s"}
 """Units in which people read an angle."""

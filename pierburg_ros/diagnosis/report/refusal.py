@@ -1,4 +1,4 @@
-"""The result where signals are not what they are read as: which ones, how that shows, and how to correct it."""
+"""The result where signals are not what they are read as, or tell nothing: how that shows, and how to correct it."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def refusal(recordings: Sequence[Recording], nominal: Model, faults: Sequence[Fa
         motion=nominal.actuator.motion,
         verdict="unexplained",
         locations=[],
-        summary=" ".join(["Nothing is concluded, for signals are not what they are read as.", *map(str, faults)]),
+        summary=" ".join(["Nothing is concluded.", *map(str, faults)]),
         fit=FitQuality(noise_floor=noise_of(first.time, first.measured), training=unknown, validation=unknown),
         data_quality=_quality(recordings),
         input_faults=[InputFault(**vars(fault)) for fault in faults],
-        advice=[f"{fault.recording}, {fault.signal}: {fault.mend}." for fault in faults]
+        advice=[f"{fault.recording}, {fault.signal}: {fault.mend.removesuffix('.')}." for fault in faults]
         + ["Where all signals are what they are read as, go on with --force."],
     )
     return Result(document, nominal, (), _signals(first))

@@ -193,12 +193,6 @@ def handed_out(found: Found) -> str:
     )
 
 
-def cautioned(limits: Sequence[Limit], text: str) -> str:
-    """The summary, after the reason why the recordings cannot decide anything, if there is one."""
-    decisive = [limit.finding for limit in limits if limit.decisive]
-    return f"Nothing can be concluded: {' '.join(decisive)} {text}" if decisive else text
-
-
 def advice(
     found: Found,
     effects: Sequence[Effect],

@@ -13,7 +13,6 @@ from pierburg_ros.diagnosis.quality import Limit
 from pierburg_ros.diagnosis.report.findings import short_times_show
 from pierburg_ros.diagnosis.report.words import (
     advice,
-    cautioned,
     divided,
     handed_out,
     held,
@@ -209,12 +208,6 @@ def test_advice_sends_nobody_to_stops_that_are_not_there() -> None:
         for actuator in (PIERBURG, read_actuator("xl330"))
     )
     assert "stops" in with_stops and "stops" not in without and "by other means" in without
-
-
-def test_what_decides_nothing_is_said_before_anything_else() -> None:
-    still = Limit("no_movement", "The shaft never moves.", decisive=True)
-    assert cautioned([still], "All is well.") == "Nothing can be concluded: The shaft never moves. All is well."
-    assert cautioned([Limit("short", "5 s only.")], "All is well.") == "All is well."
 
 
 @pytest.mark.parametrize(
