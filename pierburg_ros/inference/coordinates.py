@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.effects import ADDED, DECLARED, EFFECT, GEARED
+from pierburg_ros.effects import ADDED, DECLARED, EFFECT, EFFECTS, GEARED
 from pierburg_ros.effects.effect import HIGHEST_SHARE
-from pierburg_ros.inference.explanation import AFTER, WHEN
+from pierburg_ros.inference.explanation import AFTER, WHEN, moments_of
 from pierburg_ros.plant import Model
 
 DRIFT = math.log(6.0)
@@ -30,6 +30,12 @@ ABOVE = {name: p.above for name, p in DECLARED.items() if p.above is not None}
 """Parameters that are counted from a base parameter, by dotted name."""
 BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
 """Parameters that stay below a base parameter, by dotted name."""
+
+STARTS, ENDS = (
+    tuple(f"{effect.id}.{moments[place]}" for effect in EFFECTS if (moments := moments_of(effect.id)))
+    for place in range(2)
+)
+"""Moments at which an effect begins, and ends, by dotted name; an end of 0, never, is that of the recording."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +90,8 @@ class Coordinates:
             if name in result:
                 highest = self.axes[self.names.index(name)].maximum
                 result[name] = min(result[name] + result.get(below, self.nominal.values[below]), highest)
+        for name in result.keys() & set(ENDS):
+            result[name] %= self.axes[self.names.index(name)].scale
         for name in result.keys() & ADDED.keys():
             result[name] = max(result[name], least_added(name, result, self.nominal))
         return result
@@ -94,6 +102,8 @@ class Coordinates:
         for i, (name, axis) in enumerate(zip(self.names, self.axes, strict=True)):
             missing = 0.5 * axis.scale if name.endswith(WHEN) else values.get(name.removesuffix(AFTER), 0.0)
             value = values.get(name, missing)
+            if name in ENDS and value == 0.0:
+                value = axis.scale
             if name in ABOVE:
                 value -= values.get(ABOVE[name], self.nominal.values[ABOVE[name]])
             result[i] = axis.coordinate(value)

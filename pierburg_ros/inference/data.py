@@ -141,6 +141,12 @@ class Data:
         """Whether each sample of all runs counts: not before a simulation has settled."""
         return np.concatenate([run.counts & run.settled for run in self.runs])
 
+    @cached_property
+    def shown(self) -> tuple[float, float]:
+        """Times [s] of the first and the last sample of a run that counts."""
+        time = np.concatenate([run.time for run in self.runs])[self.counts]
+        return float(np.min(time, initial=np.inf)), float(np.max(time, initial=0.0))
+
     def by_run(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all samples, shape (samples,), one array for each run."""
         return np.split(values, np.cumsum([run.time.size for run in self.runs])[:-1])

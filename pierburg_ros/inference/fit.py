@@ -23,7 +23,7 @@ from pierburg_ros.actuators import Actuator
 from pierburg_ros.arrays import Flags, Signal
 from pierburg_ros.budget import USUAL_BUDGET, Budget, OutOfTime
 from pierburg_ros.errors import InputError
-from pierburg_ros.inference.coordinates import Coordinates, in_order
+from pierburg_ros.inference.coordinates import ENDS, STARTS, Coordinates, in_order
 from pierburg_ros.inference.data import FORMULATION, Data, Run
 from pierburg_ros.inference.evidence import EXPLAINED, SIGNIFICANT, beyond, repetition, structure
 from pierburg_ros.inference.explanation import AFTER, WHEN, Explanation
@@ -268,10 +268,16 @@ class Fitter:
                 return np.full(size, UNSIMULATED)
 
         found = minimise(fitted, coordinates.point(given), *coordinates.bounds, coordinates.steps, iterations)
-        best = {**given, **explanation.fixed, **coordinates.values(found.point)}
+        best = self.lasting({**given, **explanation.fixed, **coordinates.values(found.point)})
         model, after, when = self.models(explanation, best)
         best.update(model.values)
         return Fit(explanation, best, model, after, self.residual(model, after, when), found, self)
+
+    def lasting(self, values: dict[str, float]) -> dict[str, float]:
+        """`values` in which what no sample shows ending has no end, and what none shows beginning no beginning."""
+        first, last = self.data.shown
+        early = (name for name in STARTS if values[name] <= first)
+        return values | dict.fromkeys((*early, *(name for name in ENDS if values[name] >= last)), 0.0)
 
     def slopes(self, fit: Fit, explanation: Explanation) -> Signal:
         """Derivative of the fitted residual by the coordinates of another `explanation` at the values of `fit`."""

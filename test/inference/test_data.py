@@ -8,7 +8,7 @@ from support.recordings import NOMINAL, data_on, recording
 
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.choice import Score
-from pierburg_ros.inference.explanation import Explanation
+from pierburg_ros.inference.explanation import Explanation, Variant
 from pierburg_ros.inference.fit import Fitter, ladder
 from pierburg_ros.plant import Inputs, simulate
 from pierburg_ros.recording import Channel
@@ -54,6 +54,18 @@ def test_a_simulation_without_noise_is_held_to_what_correct_simulators_differ_by
     near = fitter.fit(Explanation(), {**NOMINAL.values, "armature_resistance": 4.1391}, 0)
     score = Score.of([right, near])
     assert near.chi2 > 1e6 * right.chi2 and score.alike(near, right)
+
+
+def test_a_load_that_no_sample_shows_ending_has_no_end():
+    """So it acts beyond the recording, too; one that ends within does end."""
+    load = Variant("external_load", ("torque", "start", "end"))
+    for end, found in ((0.0, 0.0), (17.0, 17.0)):
+        made = recording({"external_load.torque": 0.02, "external_load.end": end})
+        fitter = Fitter(data_on(made), NOMINAL, ladder(data_on(made))[0])
+        begun = {"external_load.torque": 0.015, "external_load.end": end or 23.5}
+        values = fitter.fit(Explanation((), (load,)), {**NOMINAL.values, **begun}).values
+        assert values["external_load.torque"] == pytest.approx(0.02, rel=0.05)
+        assert values["external_load.end"] == pytest.approx(found, abs=0.2) and values["external_load.start"] == 0.0
 
 
 def test_where_the_duty_is_hardly_known_nothing_is_fitted():

@@ -130,7 +130,7 @@ def effects(found: Found) -> list[Effect]:
         shown = {
             each: _estimate(found, f"{variant.effect}.{each}", values[each], unit(declared.parameter(each).unit))
             for each in declared.names
-            if each in variant.free or values[each] != 0.0
+            if values[each] != 0.0 or (each in variant.free and not declared.parameter(each).moment)
         }
         ties, share = ties_of(found, variant.effect), found.shares.effects.get(variant.effect)
         listed.append(
