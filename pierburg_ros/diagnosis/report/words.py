@@ -77,8 +77,8 @@ def reason(name: Name) -> str:
     rival = identifier(name.rival)
     other = "the model as described" if rival == NOMINAL else numbers.words(rival)
     return (
-        f"With it the error is {name.fit.ratio:.3g} times the noise, without it at best {name.rival.ratio:.3g} times"
-        f" ({other})."
+        f"Pulled to the recording, a simulation with it errs by {name.fit.ratio:.3g} times the noise, without it by"
+        f" {name.rival.ratio:.3g} times at best ({other})."
     )
 
 
@@ -188,8 +188,8 @@ def handed_out(found: Found) -> str:
     changed = (f"{numbers.words(name)} {values[name]:.4g}" for name in values if values[name] != nominal.get(name, 0.0))
     listed = f" ({', '.join(changed)})" if own != NOMINAL else ""
     return (
-        f"The model that is handed out is {what}{shape}: of all that were fitted it predicts best what no fit has"
-        f" seen{listed}."
+        f"The model that is handed out is {what}{shape}: of all that were fitted it predicts best the"
+        f" blocks that were held out to choose{listed}."
     )
 
 

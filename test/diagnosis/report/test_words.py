@@ -93,7 +93,10 @@ def spring(**changes) -> BaseParameter:
 )
 def test_an_effect_is_believed_for_a_reason_with_its_numbers(rival: Explanation, other: str) -> None:
     told = reason(Name(0.99, fit(ratio=1.0123), fit(rival, ratio=2.5)))
-    assert told == f"With it the error is 1.01 times the noise, without it at best 2.5 times ({other})."
+    assert told == (
+        "Pulled to the recording, a simulation with it errs by 1.01 times the noise, without it by 2.5 times at best"
+        f" ({other})."
+    )
 
 
 def test_what_is_not_sure_enough_is_told_with_its_probability() -> None:
@@ -139,7 +142,7 @@ def test_a_model_that_is_not_that_of_the_verdict_is_said() -> None:
     assert "handed out is the model as described:" in handed_out(found(written=fit(Explanation())))
     one = handed_out(found(written=fit(shape={})))
     assert "handed out is one with coulomb friction + backlash and a map of the missing torque: of all" in one
-    assert one.endswith("no fit has seen (coulomb friction 0.25, backlash: gap 0.04).")
+    assert one.endswith("the blocks that were held out to choose (coulomb friction 0.25, backlash: gap 0.04).")
 
 
 @pytest.mark.parametrize(
