@@ -22,6 +22,9 @@ from pierburg_ros.recording import Channel, Recording
 LATE_COMMAND = 20.0
 """Time by which a command may be stamped late, at once or by the end, in the actuator's own. Chosen: 2 s for the valve;
 not varied."""
+BURSTS = 10.0
+"""Times that the mean interval is longer than the usual one where samples were stamped as they were written, many at
+once. Derived: else nine tenths of the time have no sample."""
 CHANNELS = ("command", "supply_voltage", "enabled", "setpoints")
 ANGLES = {
     "degrees read as radians": ("deg", math.pi / 180.0),
@@ -182,6 +185,11 @@ def facts(held: Held) -> Iterator[Fault]:
     recording, nominal = held.recording, held.nominal
     name, values = recording.input, recording.command.values
     still, unsteered = np.ptp(recording.measured) == 0.0, np.ptp(values) == 0.0
+    step, mean = float(np.median(np.diff(recording.time))), recording.duration / (recording.time.size - 1)
+    if mean > BURSTS * step:
+        shown = f"Half of the samples come {step:.2g} s after the one before, {mean:.2g} s apart on average."
+        mend = "stamp each sample when it is taken, or write a time column with even steps where they were even"
+        yield Fault(recording.name, "time", "stamped in bursts", shown, mend)
     applied, sensed = (f"name the signal: `{each}: {{topic: ...}}`" for each in (name, recording.quantity))
     if still and np.ptp(simulate(nominal, inputs_of(recording), recording.time)) > PAST_STOP * nominal.scales.reading:
         shown = f"It reads {recording.measured[0]:.4g} throughout, while the {name} would move the actuator."

@@ -86,6 +86,15 @@ def test_recorded_setpoints_in_place_of_the_duty_are_told():
     assert fault.what == "a setpoint in place of the duty"
 
 
+def test_samples_that_were_stamped_as_they_were_written_are_told():
+    """Twenty at once, 10 us apart: nothing else is wrong with them."""
+    one = faults.standard(VALVE, 3)
+    number = np.arange(one.time.size)
+    stamps = 20 * one.time[1] * (number // 20) + 1e-5 * (number % 20)
+    (fault,) = audit([replace(one, time=stamps, command=Channel(stamps, one.command.at(one.time)))], VALVE)
+    assert (fault.signal, fault.what) == ("time", "stamped in bursts") and "s apart on average" in fault.evidence
+
+
 def test_a_sensor_that_is_not_read_is_told_and_a_shaft_at_rest_is_not():
     one = faults.standard(VALVE, 3)
     still = replace(one, measured=np.full(one.time.size, 0.42))

@@ -54,7 +54,7 @@ TIMES = {"sec", "nanosec", "secs", "nsecs", "micros", "millis", "stamp", "timest
 """Words in the name of a time or a number of messages, which is no signal."""
 TURN = 2.0 * math.pi
 LARGEST_DEGREES = 400.0
-"""Angles beyond a turn [rad] up to here are taken for degrees."""
+"""Angles beyond two turns [rad] up to here are taken for degrees."""
 CONVERTERS = (255, 1023, 4095, 16_383, 32_767, 65_535)
 """Largest counts of converters and timers of 8 to 16 bits."""
 CONVERTER_VOLTAGE = 3.3
@@ -198,7 +198,7 @@ def in_unit(field: Field, signal: str, named: str, largest: float) -> tuple[str,
             return "rad", 1.0, 0.0
         if COUNTS in (named, field.unit) or (counted and largest > LARGEST_DEGREES):
             return COUNTS, TURN / (full_scale(largest) + 1), 0.0
-        return ("deg" if named == "deg" or TURN < largest <= LARGEST_DEGREES else "rad"), 1.0, 0.0
+        return ("deg" if named == "deg" or 2.0 * TURN < largest <= LARGEST_DEGREES else "rad"), 1.0, 0.0
     if signal == "speed":
         return (named if named == "rpm" else "deg/s" if named == "deg" else "rad/s"), 1.0, 0.0
     if signal == "hall_voltage":

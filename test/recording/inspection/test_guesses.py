@@ -33,6 +33,7 @@ def field(name, path, low, high, whole=False, kind="bench/msg/X"):
         (field("theta_dot", "", -9, 9), "speed", "rad/s"),
         (field("/encoder", "data", 0, 16000, whole=True), "position", "counts"),
         (field("winkel", "", 0, 90), "position", "deg"),
+        (field("position", "", -7.2, 2.0), "position", "rad"),
         (field("angle_rad", "", 0, 9), "position", "rad"),
         (field("/board", "adc", 0, 4000, whole=True), "hall_voltage", "counts"),
         (field("hall [mV]", "", 420, 4520), "hall_voltage", "mV"),
