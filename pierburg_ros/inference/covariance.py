@@ -70,15 +70,18 @@ def at_least_effective(slopes: Signal, residuals: tuple[Signal, ...]) -> Covaria
     return known if np.mean(own / least) >= 1.0 else replace(known, matrix=floor)
 
 
-def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal) -> Spread:
+def spread(slopes: Signal, residuals: tuple[Signal, ...], before: Signal, rounding: float = 0.0) -> Spread:
     """Covariance from slopes, shape (samples, names), residuals, one array a run, and deviations `before`, (names,).
+
+    `rounding` is the mean square of the error of a coarse converter, which residuals are without.
 
     Freedom is counted in effective samples: sums over few long blocks say how much the residual varies, not how many
     times.
     """
     residual = np.concatenate(residuals)
     repeated = repetition(residual)
-    variance = max(float(residual @ residual) / max(residual.size - before.size, 1), 1e-300) * repeated
+    square = float(residual @ residual) / max(residual.size - before.size, 1) + rounding
+    variance = max(square, 1e-300) * repeated
     freedom = max(residual.size / repeated - before.size, 1.0)
     left, lengths, directions = np.linalg.svd(slopes * before, full_matrices=False)
     lengths = np.where(lengths > RANK * lengths[0], lengths, 0.0)

@@ -83,7 +83,7 @@ def intervals(fit: Fit, held: Sequence[str] = ()) -> dict[str, Interval]:
     lower, upper = coordinates.bounds
     ranges = (upper - lower) / DEVIATIONS
     before = np.where([name in beside for name in whole.names], ranges, FREE * (upper - lower))
-    known = spread(slopes_at(fit, whole), residuals, before)
+    known = spread(slopes_at(fit, whole), residuals, before, fit.rounding)
     told = np.sqrt(np.diagonal(known.matrix)) < NARROWED * ranges
     on_bound = np.minimum(point - lower, upper - point) <= ON_BOUND * (upper - lower)
     found = {}

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from support.recordings import NOISE, NOMINAL, PIERBURG, changing, recording, recording_in_closed_loop
+from support.recordings import NOISE, NOMINAL, PIERBURG, changing, data_on, recording, recording_in_closed_loop
 
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.inference.covariance import spread
@@ -190,3 +190,16 @@ def test_an_interval_says_all_there_is():
     assert found.identifiable
     assert not found.at_bound
     assert found.tied_with == ()
+
+
+def test_a_coarse_converter_leaves_values_as_uncertain_as_its_steps():
+    """Within a step nothing of an error shows: what is left beyond it is far less than the error is."""
+    hidden = {"armature_resistance": 4.6, "coulomb_friction": 0.22}
+    inside = 0
+    for seed in range(6):
+        one = recording(hidden, duration=12.0, seed=seed)
+        data = data_on(replace(one, measured=0.05 * np.round(one.measured / 0.05)))
+        assert data.step == pytest.approx(0.05)
+        known = intervals(Fitter(data, NOMINAL, ladder(data)[0]).fit(Explanation(tuple(hidden)), NOMINAL.values))
+        inside += sum(low <= hidden[name] <= high for name, each in known.items() for low, high in [each.ci95])
+    assert inside >= 11
