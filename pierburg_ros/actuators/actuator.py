@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-from pierburg_ros.actuators.scales import Scales
+from pierburg_ros.actuators.scales import READING, Scales
 from pierburg_ros.actuators.units import Motion, unit_of
+from pierburg_ros.effects import DECLARED
 from pierburg_ros.effects.effect import Drive, Effect, Load, Sensor
 from pierburg_ros.parameter import Parameter
 
@@ -37,6 +38,14 @@ UNITS = {
     "sensor_offset": ("rad", "measured value where the true one is 0"),
 }
 """Unit and meaning of each base parameter of an actuator."""
+
+
+def unit_of_effect(name: str, quantity: Sensor, motion: Motion) -> str:
+    """Unit of an effect's parameter by its dotted name: a converter's step is a reading, a wave's phase no travel."""
+    declared = DECLARED[name]
+    if declared.measure == READING:
+        return unit_of(SENSED[quantity], motion)
+    return declared.unit if declared.measure else unit_of(declared.unit, motion)
 
 
 @dataclass(frozen=True)
@@ -131,6 +140,11 @@ class Actuator:
     def shown(self, unit: str) -> str:
         """A declared `unit` as this actuator has it: every output says it so."""
         return unit_of(unit, self.motion)
+
+    def unit_of(self, name: str) -> str:
+        """Unit of the parameter with this dotted name."""
+        own = self.parameters.get(name)
+        return self.shown(own.unit) if own else unit_of_effect(name, self.quantity, self.motion)
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding
+from pierburg_ros.actuators.actuator import SENSED, UNITS, Actuator, NominalParameter, Winding, unit_of_effect
 from pierburg_ros.actuators.units import Motion
 from pierburg_ros.actuators.values import described
 from pierburg_ros.effects import EFFECT
@@ -112,7 +112,7 @@ class _Description(_Strict):
         for effect, values in self.effects.items():
             if effect not in EFFECT:
                 raise ValueError(f"effects has unknown {effect}; known: {', '.join(EFFECT)}.{near(effect, EFFECT)}")
-            _check_effect(effect, values)
+            self._check_effect(effect, values)
         return self
 
     def _parameters_fit(self) -> None:
@@ -142,15 +142,15 @@ class _Description(_Strict):
             if max(abs(parameter.minimum), abs(parameter.maximum)) > LARGEST:
                 raise ValueError(f"{name} may exceed {LARGEST:g}; expected a range of the actuator's own size")
 
-
-def _check_effect(effect: str, values: dict[str, float]) -> None:
-    """Refuse an effect whose numbers are unknown or missing."""
-    declared = EFFECT[effect]
-    if unknown := sorted(set(values) - set(declared.names)):
-        raise ValueError(f"{effect} has no parameter {', '.join(unknown)}.{near(unknown[0], declared.names)}")
-    for parameter in declared.parameters:
-        if parameter.name not in values and parameter.default is None:
-            raise ValueError(f"{effect} lacks {parameter.name} [{parameter.unit}]")
+    def _check_effect(self, effect: str, values: dict[str, float]) -> None:
+        """Refuse an effect whose numbers are unknown or missing."""
+        declared = EFFECT[effect]
+        if unknown := sorted(set(values) - set(declared.names)):
+            raise ValueError(f"{effect} has no parameter {', '.join(unknown)}.{near(unknown[0], declared.names)}")
+        for name in declared.names:
+            if name not in values and declared.parameter(name).default is None:
+                unit = unit_of_effect(f"{effect}.{name}", self.sensor, self.motion)
+                raise ValueError(f"{effect} lacks {name} [{unit}]")
 
 
 def needed_parameters(drive: Drive, load: Load, sensor: Sensor) -> list[str]:

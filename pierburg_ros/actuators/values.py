@@ -50,7 +50,9 @@ def check(actuator: Actuator, name: str, value: object) -> None:
     absent = isinstance(value, Real) and not isinstance(value, bool) and value == 0.0 and minimum <= 0.0
     usual = isinstance(value, float) and not declared.choices and minimum <= value <= maximum and math.isfinite(value)
     if not (absent or usual):
-        replace(declared, default=None, minimum=minimum, maximum=maximum).accepted(value, name)
+        replace(declared, default=None, unit=actuator.unit_of(name), minimum=minimum, maximum=maximum).accepted(
+            value, name
+        )
 
 
 def check_together(actuator: Actuator, values: Mapping[str, float]) -> None:

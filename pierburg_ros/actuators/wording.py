@@ -17,10 +17,15 @@ def quantity_title(quantity: str, unit: str) -> str:
     return f"{QUANTITIES[quantity]} [{unit}]"
 
 
+def torque_word(motion: Motion) -> str:
+    """What moves the output: a torque, or the force of a linear actuator."""
+    return "force" if motion == "linear" else "torque"
+
+
 def input_title(driven_by: str, motion: Motion) -> str:
-    """Title of an axis of an input; what pushes a linear actuator is a force."""
+    """Title of an axis of an input."""
     word, unit = INPUTS[driven_by]
-    return f"{'force' if (word, motion) == ('torque', 'linear') else word} [{unit_of(unit, motion)}]"
+    return f"{torque_word(motion) if word == 'torque' else word} [{unit_of(unit, motion)}]"
 
 
 def drawn_factor(driven_by: str) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.comparison.plot import drawn_input, figure
 from pierburg_ros.effects import EFFECT
@@ -50,12 +49,9 @@ def replay_page(
 def parameter_rows(model: Model) -> list[tuple[str, float, float, str]]:
     """Name, value, nominal value and unit of every parameter that acts in a model."""
     actuator, nominal = model.actuator, Model.nominal(model.actuator)
-    rows = [
-        (name, model.values[name], nominal.values[name], declared.unit)
-        for name, declared in actuator.parameters.items()
-    ]
+    rows = [(name, model.values[name], nominal.values[name], actuator.unit_of(name)) for name in actuator.parameters]
     for effect in model.active_effects:
         for parameter in EFFECT[effect].parameters:
             name = f"{effect}.{parameter.name}"
-            rows.append((name, model.values[name], nominal.values[name], unit_of(parameter.unit, actuator.motion)))
+            rows.append((name, model.values[name], nominal.values[name], actuator.unit_of(name)))
     return rows

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pierburg_ros.actuators import units
+from pierburg_ros.actuators.wording import torque_word
 from pierburg_ros.arrays import Signal
 from pierburg_ros.diagnosis.schema import Direction, Over, RemainingShape, ResidualTorque, TorqueOverTime
 from pierburg_ros.effects import EFFECT
@@ -163,16 +165,17 @@ WAYS = {"both": "", "positive": ", when the angle grows", "negative": ", when th
 """Directions in words."""
 
 
-def in_words(found: Sequence[RemainingShape], at: Lacking) -> str:
-    """The size of the missing torque and what it goes with."""
+def in_words(found: Sequence[RemainingShape], at: Lacking, motion: units.Motion = "rotary") -> str:
+    """The size of the missing torque, or force, and what it goes with."""
+    word = torque_word(motion)
     if at.torque.size == 0:
-        return "not known: between stops and pauses the shaft hardly moves, so its motion tells no missing torque"
+        return f"not known: between stops and pauses the shaft hardly moves, so its motion tells no missing {word}"
     size = float(np.sqrt(np.mean(np.square(at.alone))))
     listed = "; ".join(
         f"{percent(each.share)} of it {FORM[each.over, each.form]}{WAYS[each.direction]}" for each in found
     )
     told = listed or "it goes with neither angle, velocity, load nor time"
-    return f"a torque of {size:.2g} (root mean square) while the shaft moves: {told}"
+    return f"a {word} of {size:.2g} {units.unit_of('N.m', motion)} (root mean square) while the shaft moves: {told}"
 
 
 def torque_map(at: Lacking) -> dict[str, Signal] | None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pierburg_ros.actuators.units import unit_of
-from pierburg_ros.effects import DECLARED, EFFECT, Effect
+from pierburg_ros.effects import EFFECT, Effect
 from pierburg_ros.effects.effect import Place, Quantity
 from pierburg_ros.plant import Model
 
@@ -36,11 +35,6 @@ class Exported:
     text: str
     left_out: tuple[LeftOut, ...]
     notes: tuple[str, ...]
-
-
-def declared(effect: str, parameter: str) -> str:
-    """Unit of an effect's parameter, as it is declared."""
-    return DECLARED[f"{effect}.{parameter}"].unit
 
 
 @dataclass
@@ -90,21 +84,24 @@ class Contents:
 
     def left_out(self) -> tuple[LeftOut, ...]:
         """What has not been read, in the order of the signal path; zeros are nothing to hold."""
-        values = self.model.values
-        motion = self.model.actuator.motion
+        values, actuator = self.model.values, self.model.actuator
         base = [
-            LeftOut(None, name, values[name], parameter.unit)
-            for name, parameter in self.model.actuator.parameters.items()
+            LeftOut(None, name, values[name], actuator.unit_of(name))
+            for name in actuator.parameters
             if name not in self._read and values[name] != IDENTITY.get(name, 0.0)
         ]
         effects = [
-            LeftOut(effect.id, name, values[f"{effect.id}.{name}"], unit_of(declared(effect.id, name), motion))
+            LeftOut(effect.id, name, values[f"{effect.id}.{name}"], actuator.unit_of(f"{effect.id}.{name}"))
             for effect in self._acting()
             for name in effect.names
             if f"{effect.id}.{name}" not in self._read and values[f"{effect.id}.{name}"] != 0.0
         ]
         lacks_residual = self.model.residual_torque is not None and "residual_torque" not in self._read
-        return (*base, *effects, *([LeftOut(None, "residual_torque", None, "N.m")] if lacks_residual else []))
+        return (
+            *base,
+            *effects,
+            *([LeftOut(None, "residual_torque", None, actuator.shown("N.m"))] if lacks_residual else []),
+        )
 
     def exported(self, text: str) -> Exported:
         """The finished text with what it lacks."""

@@ -64,7 +64,7 @@ def parameter(contents: Contents, name: str) -> dict[str, Any]:
     about, value = contents.model.actuator.parameters[name], contents.base(name)
     return {
         "value": value,
-        "unit": about.unit,
+        "unit": contents.model.actuator.unit_of(name),
         "nominal": about.nominal,
         "meaning": about.meaning,
         "origin": about.origin,
@@ -76,7 +76,7 @@ def described(contents: Contents, effect: Effect) -> dict[str, Any]:
     numbers = {
         name: {
             "value": contents.model.values[f"{effect.id}.{name}"],
-            "unit": unit_of(DECLARED[f"{effect.id}.{name}"].unit, contents.model.actuator.motion),
+            "unit": contents.model.actuator.unit_of(f"{effect.id}.{name}"),
             "meaning": DECLARED[f"{effect.id}.{name}"].meaning,
         }
         for name in effect.names

@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.effects import DECLARED, Effect
 from pierburg_ros.effects.effect import Place
 from pierburg_ros.export.contents import Contents
@@ -55,13 +54,13 @@ def declared(contents: Contents, acting: Sequence[tuple[Effect, Mapping[Place, s
     yield 'parameter Real start_angle = 0 "angle at the start [rad]"'
     actuator = contents.model.actuator
     for name, base in actuator.parameters.items():
-        yield f'parameter Real {name} = {contents.base(name)!r} "{plain(base.meaning)} [{base.unit}]"'
+        yield f'parameter Real {name} = {contents.base(name)!r} "{plain(base.meaning)} [{actuator.unit_of(name)}]"'
     yield f'parameter Real sensor_span = {actuator.sensor_span!r} "over which the sensor is straight"'
     for effect, _ in acting:
         for parameter in effect.names:
             about = DECLARED[f"{effect.id}.{parameter}"]
             value = contents.model.values[f"{effect.id}.{parameter}"]
-            unit = unit_of(about.unit, actuator.motion)
+            unit = actuator.unit_of(f"{effect.id}.{parameter}")
             yield f'parameter Real {effect.id}_{parameter} = {value!r} "{plain(about.meaning)} [{unit}]"'
     yield from rigid(contents, acting)
 

@@ -140,9 +140,7 @@ def fleet_of(examined: Sequence[Examined], nominal: Model, limits: Mapping[str, 
 
 def units_of(nominal: Model) -> dict[str, str]:
     """Unit of every quantity by dotted name."""
-    shown = nominal.actuator.shown
-    base = {name: shown(declared.unit) for name, declared in nominal.actuator.parameters.items()}
-    return {**base, **{name: shown(declared.unit) for name, declared in DECLARED.items()}}
+    return {name: nominal.actuator.unit_of(name) for name in (*nominal.actuator.parameters, *DECLARED)}
 
 
 def checked_limits(limits: Mapping[str, float], nominal: Model) -> dict[str, float]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.actuators import Actuator
-from pierburg_ros.actuators.units import unit_of as unit_in
+from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError
 from pierburg_ros.identification.fit import Identified
@@ -56,7 +56,7 @@ class Identification:
         residual = self.fitted.model.residual_torque
         if residual is None or self.model.residual_torque is not None:
             return None
-        unit = unit_in("N.m", self.model.actuator.motion)
+        unit = unit_of("N.m", self.model.actuator.motion)
         return f"A torque is part of the model, residual_torque: {described_turn(residual['torque'], unit)}."
 
     def as_mapping(self) -> dict[str, Any]:
@@ -77,7 +77,7 @@ class Identification:
         interval = None if fixed or not finding.identifiable else list(self.fitted.ci95[name])
         return {
             "value": self.fitted.model.values[name],
-            "unit": unit_of(self.model, name),
+            "unit": self.model.actuator.unit_of(name),
             "ci95": interval,
             "identifiable": finding.identifiable,
             "fixed": fixed,
@@ -118,7 +118,7 @@ def identify(
     names = free_names(model, free, fixed)
     found, runaway = fitted(model, recordings, names, jobs)
     findings = identifiability(found, recordings)
-    findings |= {name: endless(found, model, name, unit_of(model, name)) for name in runaway}
+    findings |= {name: endless(found, model, name, model.actuator.unit_of(name)) for name in runaway}
     static = static_characteristic(recordings, model.actuator) if papers(model.actuator) else None
     paper = papers(model.actuator) and found.model.values["spring_stiffness"] > 0.0
     return Identification(
@@ -185,14 +185,6 @@ def validation_rmse(
     kept, simulated = resimulated(found.model, unseen)
     residual = (kept.measured - simulated)[first:]
     return float(np.sqrt(np.mean(residual**2)))
-
-
-def unit_of(model: Model, name: str) -> str:
-    """Unit of a parameter by its dotted name."""
-    if "." not in name:
-        return model.actuator.shown(model.actuator.parameters[name].unit)
-    effect, own = name.split(".")
-    return model.actuator.shown(EFFECT[effect].parameter(own).unit)
 
 
 def _lump(lump: Lump) -> dict[str, Any]:

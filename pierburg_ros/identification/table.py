@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pierburg_ros.identification.identify import Identification, unit_of
+from pierburg_ros.identification.identify import Identification
 from pierburg_ros.identification.paper.step_response import primitive_parameters
 from pierburg_ros.identification.paper.table_one import Check
 from pierburg_ros.pages.listing import Listing
@@ -47,9 +47,9 @@ def paper_table(found: Identification) -> Listing | None:
     """The paper's procedure beside the fit; None where the recordings hold no steps from rest."""
     if found.steps is None or found.static is None:
         return None
-    values, steps = found.fitted.model.values, found.steps
+    values, steps, unit_of = found.fitted.model.values, found.steps, found.model.actuator.unit_of
     rows = [
-        (name, f"{value:.5g}", f"{values[name]:.5g}", unit_of(found.model, name))
+        (name, f"{value:.5g}", f"{values[name]:.5g}", unit_of(name))
         for name, value in primitive_parameters(steps, found.static, values).items()
     ]
     for name, value, deviation, unit in (

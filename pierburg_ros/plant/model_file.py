@@ -122,7 +122,8 @@ def _effect(model: Model, effect: str, numbers: Any, label: str, line: Any) -> d
     if any(changes.get(f"{effect}.{name}", 0.0) != 0.0 for name in declared.strength):
         for parameter in declared.parameters:
             if parameter.name not in numbers and parameter.default is None:
-                raise InputError(f"{place}: {effect} lacks {parameter.name} [{parameter.unit}]; give a value.")
+                unit = model.actuator.unit_of(f"{effect}.{parameter.name}")
+                raise InputError(f"{place}: {effect} lacks {parameter.name} [{unit}]; give a value.")
     return changes
 
 

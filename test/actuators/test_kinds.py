@@ -9,6 +9,7 @@ import pytest
 from pierburg_ros.actuators import SHIPPED, actuator_of, read_actuator
 from pierburg_ros.actuators.gauge import in_ratio
 from pierburg_ros.actuators.units import LINEAR, unit_of
+from pierburg_ros.actuators.values import check
 from pierburg_ros.actuators.wording import input_title, place
 from pierburg_ros.effects import DECLARED, EFFECT
 from pierburg_ros.errors import InputError
@@ -150,3 +151,15 @@ def test_the_size_of_all_torques_is_told_by_no_torque_and_motion():
         == in_ratio(read_actuator("pierburg"), "torque_scale")
         == ()
     )
+
+
+def test_a_step_has_the_unit_of_what_is_measured_and_a_wave_has_an_angle_for_its_phase() -> None:
+    steps = {name: read_actuator(name).unit_of("sensor_quantization.step") for name in SHIPPED}
+    assert steps == {"pierburg": "V", "xl330": "rad", "ak80": "rad", "odrive": "rad"}
+    axis = actuator_of(AXIS, "axis")
+    names = ("sensor_quantization.step", "cogging_torque.phase", "cogging_torque.amplitude", "spring_preload")
+    assert [axis.unit_of(name) for name in names] == ["m", "rad", "N", "N"]
+    with pytest.raises(InputError, match=r"lacks step \[m\]"):
+        actuator_of(changed(effects={"sensor_quantization": {}}), "axis")
+    with pytest.raises(InputError, match=r"to 1e\+09 m\."):
+        check(axis, "sensor_quantization.step", -1.0)

@@ -124,3 +124,11 @@ def test_a_friction_that_the_simulator_has_is_missing_along_its_motion():
     (found, *_) = shapes(at)
     assert (found.over, found.form, found.direction) == ("velocity", "linear", "both")
     assert found.share > 0.8
+
+
+def test_what_is_missing_has_its_word_and_unit():
+    at = lacked(0.1 * VELOCITY)
+    assert " N.m (root mean square)" in in_words([], at) and in_words([], at).startswith("a torque of ")
+    assert " N (root mean square)" in in_words([], at, "linear") and in_words([], at, "linear").startswith(
+        "a force of "
+    )

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
@@ -125,3 +126,17 @@ def test_urdf_and_sdf_have_the_numbers_of_the_urdf_that_is_shipped():
 def test_an_unknown_format_is_refused():
     with pytest.raises(InputError, match=r"^There is no format stl; expected mujoco, urdf, sdf, modelica, json\. "):
         export(NOMINAL, "stl")
+
+
+@pytest.mark.parametrize("to", ["urdf", "json"])
+def test_a_linear_actuator_is_written_in_its_own_units(to):
+    """A valve that slides is no real one, but has every number."""
+    sliding = Model.nominal(replace(NOMINAL.actuator, motion="linear", quantity="position"))
+    exported = export(sliding.with_values({"sensor_quantization.step": 0.001}), to)
+    if to == "urdf":
+        units = {each.parameter: each.unit for each in exported.left_out}
+    else:
+        content = json.loads(exported.text)
+        numbers = {**content["parameters"], **content["effects"][0]["parameters"]}
+        units = {name: each["unit"] for name, each in numbers.items()}
+    assert [units[name] for name in ("spring_preload", "spring_stiffness", "step")] == ["N", "N/m", "m"]

@@ -39,7 +39,7 @@ from pierburg_ros.diagnosis.schema import (
     RuledOut,
     Verdict,
 )
-from pierburg_ros.effects import DECLARED, EFFECT, EFFECTS, ROUNDING
+from pierburg_ros.effects import EFFECT, EFFECTS, ROUNDING, STEP
 from pierburg_ros.inference.choice import Name, Score, taken
 from pierburg_ros.inference.data import Data
 from pierburg_ros.inference.evidence import SIGNIFICANT
@@ -123,12 +123,12 @@ def effort(found: Found) -> Effort:
 
 def effects(found: Found) -> list[Effect]:
     """The effects of the chosen explanation, with their parameters, ties and reasons."""
-    own, unit, listed = found.choice.handed, found.data.actuator.shown, []
+    own, listed = found.choice.handed, []
     for variant in own.explanation.variants:
         declared, name = EFFECT[variant.effect], found.choice.names[variant.effect]
         values = {each: own.values[f"{variant.effect}.{each}"] for each in declared.names}
         shown = {
-            each: _estimate(found, f"{variant.effect}.{each}", values[each], unit(declared.parameter(each).unit))
+            each: _estimate(found, f"{variant.effect}.{each}", values[each])
             for each in declared.names
             if values[each] != 0.0 or (each in variant.free and not declared.parameter(each).moment)
         }
@@ -150,7 +150,7 @@ def effects(found: Found) -> list[Effect]:
 def converter(found: Found) -> Effect:
     """The steps of a converter, seen in the samples themselves."""
     declared = ROUNDING.parameters[0]
-    step = Estimate(value=found.step, unit=found.data.actuator.shown(declared.unit), ci95=None, identifiable=True)
+    step = Estimate(value=found.step, unit=found.data.actuator.unit_of(STEP), ci95=None, identifiable=True)
     shown = {declared.name: step}
     text = words.effect_explanation(ROUNDING.id, shown, [], words.BY_GRID)
     return Effect(id=ROUNDING.id, confidence=1.0, parameters=shown, explanation=text)
@@ -166,7 +166,7 @@ def doubted(found: Found) -> list[Doubted]:
             parameters={
                 each: Estimate(
                     value=name.fit.values[f"{effect}.{each}"],
-                    unit=found.data.actuator.shown(EFFECT[effect].parameter(each).unit),
+                    unit=found.data.actuator.unit_of(f"{effect}.{each}"),
                     ci95=None,
                     identifiable=False,
                 )
@@ -188,8 +188,8 @@ def worth_telling(found: Found) -> dict[str, Name]:
     }
 
 
-def _estimate(found: Found, name: str, value: float, unit: str) -> Estimate:
-    known = found.intervals.get(name)
+def _estimate(found: Found, name: str, value: float) -> Estimate:
+    known, unit = found.intervals.get(name), found.data.actuator.unit_of(name)
     if known is None:
         return Estimate(value=value, unit=unit, ci95=None, identifiable=True)
     return Estimate(
@@ -215,14 +215,13 @@ def parameters(found: Found) -> dict[str, BaseParameter]:
     actuator, own = found.data.actuator, found.choice.handed
     nominal, result = own.fitter.nominal, {}
     for name in dict.fromkeys((*actuator.parameters, *found.inferred.free)):
-        declared = actuator.parameters[name] if name in actuator.parameters else DECLARED[name]
         known, described = found.intervals.get(name), nominal.values[name]
         moved = name in own.explanation.drifted and not _within(described, known.ci95 if known else None)
         drifted = moved or name == own.explanation.changed
         result[name] = BaseParameter(
             nominal=described,
             value=own.model.values[name],
-            unit=actuator.shown(declared.unit),
+            unit=actuator.unit_of(name),
             ci95=known.ci95 if known else None,
             identifiable=known.identifiable if known else name in found.inferred.drifts,
             drifted=drifted,
@@ -319,7 +318,7 @@ def not_testable(found: Found) -> list[NotTestable]:
 
 def ruled_out(limit: Limit, found: Found) -> RuledOut:
     """A strength that is excluded, with its unit; where something remains, it counts that."""
-    unit = found.data.actuator.shown(EFFECT[limit.effect].parameter(limit.parameter).unit)
+    unit = found.data.actuator.unit_of(f"{limit.effect}.{limit.parameter}")
     side = {"above" if limit.above else "below": limit.value}
     return RuledOut(
         id=limit.effect,
@@ -335,7 +334,11 @@ def remaining(found: Found) -> Remaining:
     if found.choice.explained:
         return Remaining(share=found.shares.remains, looks_like="noise")
     forms = remains.shapes(found.lacking)
-    return Remaining(share=found.shares.remains, looks_like=remains.in_words(forms, found.lacking), shapes=forms)
+    return Remaining(
+        share=found.shares.remains,
+        looks_like=remains.in_words(forms, found.lacking, found.data.actuator.motion),
+        shapes=forms,
+    )
 
 
 def excluded(cleaned: Sequence[Cleaned], actuator: Actuator) -> list[Excluded]:

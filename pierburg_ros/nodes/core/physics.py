@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from pierburg_ros.actuators import read_actuator
-from pierburg_ros.effects import EFFECT
+from pierburg_ros.effects import DECLARED
 from pierburg_ros.errors import InputError
 from pierburg_ros.parameter import Parameter as Declaration
 from pierburg_ros.plant import Model, Plant, read_model
@@ -97,11 +97,5 @@ def chosen_model(actuator: str, path: str) -> Model:
 def declaration(model: Model, name: str) -> Declaration:
     """A model's parameter as a ROS parameter."""
     minimum, maximum = model.range(name)
-    if "." in name:
-        effect, own = name.split(".")
-        declared = EFFECT[effect].parameter(own)
-        meaning, unit = declared.meaning, declared.unit
-    else:
-        base = model.actuator.parameters[name]
-        meaning, unit = base.meaning, base.unit
-    return Declaration(name, float(model.values[name]), meaning, model.actuator.shown(unit), minimum, maximum)
+    meaning = (model.actuator.parameters.get(name) or DECLARED[name]).meaning
+    return Declaration(name, float(model.values[name]), meaning, model.actuator.unit_of(name), minimum, maximum)

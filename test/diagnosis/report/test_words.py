@@ -10,7 +10,7 @@ from pierburg_ros.diagnosis.found import Share, Shares
 from pierburg_ros.diagnosis.limits import Limit as Strongest
 from pierburg_ros.diagnosis.limits import Seen
 from pierburg_ros.diagnosis.quality import Limit
-from pierburg_ros.diagnosis.report.findings import short_times_show
+from pierburg_ros.diagnosis.report.findings import converter, ruled_out, short_times_show
 from pierburg_ros.diagnosis.report.words import (
     advice,
     divided,
@@ -220,3 +220,10 @@ def test_advice_sends_nobody_to_stops_that_are_not_there() -> None:
 def test_slow_sampling_hides_no_short_time_that_has_a_limit(limits, show) -> None:
     seen = {effect: Seen(value and Strongest(effect, "delay", value, False), 0.0) for effect, value in limits.items()}
     assert short_times_show(SimpleNamespace(seen=seen)) is show
+
+
+def test_a_converters_step_is_in_the_unit_of_what_is_measured():
+    actuator, choice = read_actuator("xl330"), SimpleNamespace(explained=True)
+    found = SimpleNamespace(step=0.0015, data=SimpleNamespace(actuator=actuator), choice=choice)
+    assert converter(found).parameters["step"].unit == "rad" and "0.0015 rad" in converter(found).explanation
+    assert ruled_out(Strongest("sensor_quantization", "step", 0.001, False), found).unit == "rad"
