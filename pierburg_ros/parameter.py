@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
+from numbers import Integral, Real
 
 from pierburg_ros.errors import InputError
 
@@ -51,6 +51,8 @@ class Parameter:
         expected = float if self.default is None else type(self.default)
         if expected is float and isinstance(value, Real) and not isinstance(value, bool):
             value = _double(value)
+        if expected is int and isinstance(value, Integral) and not isinstance(value, bool):
+            value = int(value)
         if expected is list and isinstance(value, tuple):
             value = list(value)
         texts = not isinstance(value, list) or all(isinstance(each, str) for each in value)

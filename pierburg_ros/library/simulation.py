@@ -6,26 +6,31 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pierburg_ros.actuators import Actuator
 from pierburg_ros.closed_loop import simulate_loop
 from pierburg_ros.closed_loop.open_loop import simulate_measurement
 from pierburg_ros.control import Schedule, Settings, read_duty_file, read_parameter_file, read_setpoint_file
 from pierburg_ros.control.schedule import read_schedule
+from pierburg_ros.control.setpoints import STOP_TOLERANCE, Setpoints
 from pierburg_ros.errors import InputError
 from pierburg_ros.inference.data import inputs_of
-from pierburg_ros.intake import check_count
+from pierburg_ros.intake import check_count, check_magnitude
+from pierburg_ros.intake.bounds import LARGEST
 from pierburg_ros.library.model import Model, ModelLike, chosen_model
 from pierburg_ros.library.reading import read
 from pierburg_ros.library.recording import Recording
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.library.topics import topics_of
+from pierburg_ros.parameter import Parameter
 from pierburg_ros.plant import Inputs
 from pierburg_ros.recording import Channel, write_recording
+from pierburg_ros.recording.read import SPARSEST
 
 if TYPE_CHECKING:
     import pandas
@@ -37,6 +42,13 @@ RATE = 500.0
 """Samples a second [Hz] where neither an option nor the input says; the rate of the valve's control loop."""
 AFTER_LAST = 2.0
 """How long the last row of a file holds unless a duration is given [s]: two time constants of the valve."""
+SAMPLED = (
+    Parameter("duration", None, "length", "s", 0.01, 1e5),
+    Parameter("rate", None, "samples a second", "Hz", 1.0 / SPARSEST, 1e5),
+    Parameter("noise", None, "RMS, in the measured unit", "", 0.0, LARGEST),
+    Parameter("seed", 0, "of the noise", "", 0, 2**63),
+)
+"""What may be asked of a run: at least what is read again as a recording, at most what the command takes."""
 Signal: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = Sequence[float] | Signal
 Drive: TypeAlias = Recording | Values | str | Path
@@ -55,6 +67,18 @@ class Sampling:
     seed: int = 0
     initial_angle: float = 0.0
     """[rad]"""
+
+    def __post_init__(self) -> None:
+        for each in SAMPLED:
+            if (given := getattr(self, each.name)) is not getattr(Sampling, each.name):
+                object.__setattr__(self, each.name, each.accepted(given))
+
+    def start(self, actuator: Actuator) -> float:
+        """The initial angle [rad], which is 0 or between the stops; InputError where it is neither."""
+        low, high = min(actuator.lower_stop, 0.0), max(actuator.upper_stop, 0.0)
+        ends = low - STOP_TOLERANCE, high + STOP_TOLERANCE
+        Parameter("initial_angle", None, "", actuator.shown("rad"), *ends).accepted(self.initial_angle)
+        return self.initial_angle
 
     def times(self, last: float) -> Signal:
         """Sample times [s], evenly spaced, by default until `last`."""
@@ -168,6 +192,8 @@ def simulate(
     """
     if (duty is None) == (setpoints is None):
         raise InputError("Expected either a duty (open loop) or setpoints (closed loop). Give one of them.")
+    if time is not None and isinstance(duty if setpoints is None else setpoints, (str, Path, Recording)):
+        raise InputError("Found a time beside a file or a recording, which has its own. Leave the time out.")
     if duty is not None and controller is not None:
         raise InputError("Found a controller with a duty, which runs without one. Leave the controller out.")
     chosen = chosen_model(model)
@@ -175,9 +201,11 @@ def simulate(
     if duty is not None:
         return Simulation(chosen, open_loop(chosen, duty, time, sampling))
     assert setpoints is not None
-    settings = controller if isinstance(controller, Settings) else Settings()
-    if isinstance(controller, (str, Path)):
-        settings = read_parameter_file(controller)
+    settings = Settings() if controller is None else controller
+    if isinstance(settings, (str, Path)):
+        settings = read_parameter_file(settings)
+    if not isinstance(settings, Settings):
+        raise InputError(f"Found a controller of type {type(settings).__name__}, expected settings. Give their file.")
     return Simulation(chosen, closed_loop(chosen, settings, scheduled(setpoints, time), sampling))
 
 
@@ -186,11 +214,12 @@ def closed_loop(model: Model, settings: Settings, setpoints: Schedule, sampling:
     duration = sampling.duration or float(setpoints.time[-1]) + AFTER_LAST
     rate = sampling.rate or RATE
     check_count(duration, rate, "A simulation")
-    run = simulate_loop(
-        model, settings, setpoints, duration, rate, sampling.noise, sampling.seed, sampling.initial_angle
-    )
-    wanted = until(Channel(setpoints.time, setpoints.values), run.time[-1])
-    return Recording(FILE, "hall_voltage", run.time, run.hall_voltage, Channel(run.time, run.duty), setpoints=wanted)
+    limits = Setpoints(settings.angle_closed, settings.angle_open, settings.angle_closed)
+    wanted = Schedule(setpoints.time, np.array([limits.accepted(each) for each in setpoints.values.tolist()]))
+    start = sampling.start(model.actuator)
+    run = simulate_loop(model, settings, wanted, duration, rate, sampling.noise, sampling.seed, start)
+    given = until(Channel(wanted.time, wanted.values), run.time[-1])
+    return Recording(FILE, "hall_voltage", run.time, run.hall_voltage, Channel(run.time, run.duty), setpoints=given)
 
 
 def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling) -> Recording:
@@ -213,10 +242,11 @@ def open_loop(model: Model, duty: Drive, time: Values | None, sampling: Sampling
         times = sampling.times_like(recorded.time)
     else:
         when = changes(time)
-        inputs = Inputs(when, np.asarray(duty, dtype=float))
+        inputs = Inputs(when, numbers(model.actuator.input, duty))
         channel = Channel(inputs.time, inputs.command)
         times = sampling.times_like(when)
-    measured = simulate_measurement(model, inputs, times, sampling.noise, sampling.seed, sampling.initial_angle)
+    start = sampling.start(model.actuator)
+    measured = simulate_measurement(model, inputs, times, sampling.noise, sampling.seed, start)
     last = float(times[-1])
     supply, enabled = (each and until(each, last) for each in (supply, enabled))
     held, driven_by = until(channel, last), model.actuator.input
@@ -239,7 +269,7 @@ def scheduled(setpoints: Values | str | Path, time: Values | None) -> Schedule:
     """Setpoints [rad] from a file, or the values given with their times."""
     if isinstance(setpoints, (str, Path)):
         return read_setpoint_file(setpoints)
-    when, values = changes(time), np.asarray(setpoints, dtype=float)
+    when, values = changes(time), numbers("setpoints", setpoints)
     if when.shape != values.shape:
         raise InputError(f"Found {when.size} times and {values.size} setpoints, expected one time for each.")
     return Schedule(when, values)
@@ -249,10 +279,23 @@ def changes(time: Values | None) -> Signal:
     """Times [s] of values, rising; InputError where there are none."""
     if time is None:
         raise InputError("Found values without their times, expected one time [s] for each. Give time too.")
-    when = np.asarray(time, dtype=float)
+    when = numbers("time", time)
     if when.ndim != 1 or when.size < 2 or not np.all(np.diff(when) > 0):
         raise InputError(f"Found times of shape {when.shape}, expected two or more, each after the one before.")
     return when
+
+
+def numbers(what: str, given: Any) -> Signal:
+    """Real numbers as an array; InputError where they are others, as dates are, or where one is masked or too large."""
+    kind = np.asarray(given).dtype
+    if kind.kind not in "biuf" or np.ma.is_masked(given):
+        found = "masked values" if np.ma.is_masked(given) else kind
+        raise InputError(
+            f"Found {what} as {found}, expected real numbers, none missing. Convert them, times to seconds."
+        )
+    values = np.asarray(given, dtype=float)
+    check_magnitude(what, values.ravel())
+    return values
 
 
 def until(channel: Channel, last: float) -> Channel:

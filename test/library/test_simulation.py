@@ -6,6 +6,8 @@ import pytest
 import pierburg_ros as pr
 from pierburg_ros.plant import Inputs, simulate
 
+STEP = {"duty": [0.1, 0.2], "time": [0.0, 0.5]}
+
 
 def test_arrays_drive_the_plant_and_are_sampled_where_they_change(stiff):
     time = np.array([0.0, 0.5, 0.75, 2.0])
@@ -49,11 +51,40 @@ def test_the_controller_brings_the_shaft_to_its_setpoints():
         ({"setpoints": [0.1], "time": [0.0, 0.5]}, "2 times and 1 setpoints"),
         ({"duty": [10.0, 20.0], "time": [0.0, 0.5]}, "Divide percentages by 100"),
         ({"duty": [0.1, 0.2], "time": [0.0, 0.5], "controller": "c.yaml"}, "Found a controller with a duty"),
+        ({**STEP, "noise": -0.1}, "noise is -0.1; expected 0 to"),
+        ({**STEP, "noise": "a"}, "noise is 'a'; expected a number"),
+        ({**STEP, "rate": 0.0}, "rate is 0; expected 0.0166667 to 100000 Hz"),
+        ({**STEP, "rate": -5.0}, "rate is -5"),
+        ({**STEP, "duration": 0.0}, "duration is 0; expected 0.01 to 100000 s"),
+        ({**STEP, "duration": -1}, "duration is -1"),
+        ({**STEP, "seed": -1}, "seed is -1"),
+        ({**STEP, "seed": 1.5}, "seed is 1.5; expected a whole number"),
+        ({**STEP, "initial_angle": 45.0}, "initial_angle is 45; expected -0.002 to 1.5728 rad"),
+        ({**STEP, "time": np.array([0, 1], "m8[s]")}, "Found time as timedelta64.*, expected real numbers"),
+        ({**STEP, "time": np.array([0, 1], "M8[s]")}, "Found time as datetime64"),
+        ({**STEP, "duty": np.ma.array([0.1, 0.2], mask=[True, False])}, "Found duty as masked values"),
+        ({**STEP, "duty": [0.1, 0.2j]}, "Found duty as complex"),
+        ({"setpoints": [0.0, 45.0], "time": [0.0, 0.5]}, "Setpoint 45 rad is beyond the stops"),
+        ({"setpoints": [0.0, 0.4], "time": [0.0, 0.5], "initial_angle": 45.0}, "initial_angle is 45"),
+        ({"setpoints": [0.0, 0.4], "time": [0.0, 0.5], "controller": {}}, "Found a controller of type dict"),
+        ({"duty": "duty.csv", "time": [0.0, 0.5]}, "Found a time beside a file"),
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_the_reason(arguments, reason):
     with pytest.raises(pr.InputError, match=reason):
         pr.simulate(pr.Model.nominal(), **arguments)
+
+
+def test_numbers_of_any_real_kind_are_taken(stiff):
+    as_doubles = pr.simulate(stiff, duty=[0.0, 1.0], time=[0.0, 1.0], seed=3, noise=0.01)
+    whole = np.array([0, 1])
+    taken = pr.simulate(stiff, duty=whole, time=np.ma.array(whole), seed=np.int64(3), noise=np.float64(0.01))
+    np.testing.assert_array_equal(taken.measured, as_doubles.measured)
+
+
+def test_a_setpoint_beyond_a_stop_by_rounding_is_the_stop():
+    made = pr.simulate(pr.Model.nominal(), setpoints=[0.0, 1.571], time=[0.0, 0.5])
+    np.testing.assert_array_equal(made.recording.setpoints.values, [0.0, np.pi / 2])
 
 
 def test_a_model_is_read_as_it_was_written_and_stays_one_of_the_librarys(stiff, tmp_path):
