@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import yaml
@@ -20,6 +20,18 @@ from pierburg_ros.errors import InputError
 from pierburg_ros.plant.parameters import NEUTRAL, RESIDUAL_ANGLES, RESIDUAL_NODES, RESIDUAL_VELOCITIES, pack
 
 
+class Values(dict[str, float]):
+    """Values by dotted name that stay as they are; as fast to read as any dict."""
+
+    def _refuse(self, *_: Any, **__: Any) -> NoReturn:
+        raise TypeError("A model never changes. with_values gives another one.")
+
+    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Values, (dict(self),)
+
+
 @dataclass(frozen=True)
 class Model:
     """Flat `values` by dotted name (`armature_resistance`, `effect.parameter`), complete: absent effects read 0."""
@@ -27,6 +39,9 @@ class Model:
     actuator: Actuator
     values: dict[str, float]
     residual_torque: Mapping[str, Any] | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", Values(self.values))
 
     @staticmethod
     def nominal(actuator: Actuator) -> Model:

@@ -1,5 +1,8 @@
 """`pr.simulate` and `pr.Model`: arrays, files and recordings in, a recording out."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -102,3 +105,27 @@ def test_a_model_can_be_named_by_the_path_of_its_file(stiff, simulation, tmp_pat
 def test_a_missing_recording_is_refused():
     with pytest.raises(pr.InputError, match="There is no recording"):
         pr.identify([])
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda values: values.update(armature_resistance=-3.0),
+        lambda values: values.pop("armature_resistance"),
+        lambda values: values.__setitem__("armature_resistance", -3.0),
+        lambda values: values.__ior__({"armature_resistance": -3.0}),
+    ],
+)
+def test_a_model_never_changes(stiff, change):
+    given = dict(stiff.values)
+    model = pr.Model(stiff.actuator, given)
+    with pytest.raises(TypeError, match="A model never changes"):
+        change(model.values)
+    given["armature_resistance"] = -3.0
+    assert model == stiff and model.values | {"armature_resistance": 5.0} != stiff.values
+
+
+def test_a_model_is_copied_and_pickled_as_it_is(stiff):
+    for made in (copy.copy(stiff), copy.deepcopy(stiff), pickle.loads(pickle.dumps(stiff))):
+        assert made == stiff and isinstance(made, pr.Model) and made.with_values({"gear_ratio": 37.3})
+        np.testing.assert_array_equal(made.record(), stiff.record())
