@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Lock
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -55,6 +55,13 @@ class Effort:
     _interruptible: bool = field(default=False, repr=False)
     _begun: float = field(default_factory=time.monotonic, repr=False)
     _lock: Lock = field(default_factory=Lock, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For copies, each of which has a lock of its own."""
+        return {name: value for name, value in vars(self).items() if name != "_lock"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, _lock=Lock())
 
     def count(self) -> None:
         """One more; OutOfTime where the time is over during `interruptible` work."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -83,6 +84,10 @@ class Solution:
     point: Signal
     residual: Signal
     slope: Callable[[], Signal] = field(repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For copies: the slopes in place of what computes them."""
+        return {"point": self.point, "residual": self.residual, "jacobian": self.jacobian}
 
     @property
     def cost(self) -> float:

@@ -1,6 +1,8 @@
 """Results: as JSON, on disk, drawn, in tables, in a notebook."""
 
+import copy
 import json
+import pickle
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -41,6 +43,12 @@ def test_results_recordings_and_models_print_as_one_line(result):
 def test_a_recording_and_a_result_are_drawn_alike(simulation, comparison):
     for each in (simulation, comparison, comparison.recording, simulation.recording):
         assert isinstance(each.plot(), go.Figure)
+
+
+def test_a_result_is_copied_and_pickled_with_all_its_numbers(result):
+    for made in (copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
+        assert made.to_json() == result.to_json() and made.rows() == result.rows()
+        assert made.model == result.model
 
 
 def test_equal_models_are_one_key():
