@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
+from numbers import Integral
 from queue import SimpleQueue
 from threading import Thread
 from typing import Any, ParamSpec, TypeVar
@@ -62,9 +63,9 @@ def workers(jobs: int | None = None) -> Iterator[Executor]:
 
 
 def checked_jobs(jobs: int | None) -> int:
-    """The number of workers that is meant by `jobs`; InputError where it is less than one."""
-    if jobs is not None and jobs < 1:
-        raise InputError(f"jobs is {jobs}; expected 1 or more. Leave it out to use every core.")
+    """The number of workers that is meant by `jobs`; InputError where it is no whole number, or less than one."""
+    if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
+        raise InputError(f"jobs is {jobs!r}; expected 1 or more, a whole number. Leave it out to use every core.")
     return jobs or cores()
 
 

@@ -16,7 +16,7 @@ from pierburg_ros.actuators.values import described
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.effects.effect import Drive, Load, Sensor
 from pierburg_ros.errors import InputError, near, printable
-from pierburg_ros.intake import parsed, reading, text_of
+from pierburg_ros.intake import parsed, path_of, reading, text_of
 from pierburg_ros.intake.bounds import LARGEST
 
 SHIPPED = ("pierburg", "xl330", "ak80", "odrive")
@@ -161,6 +161,7 @@ def needed_parameters(drive: Drive, load: Load, sensor: Sensor) -> list[str]:
 
 def read_actuator(source: str | Path) -> Actuator:
     """The actuator called `source` (a shipped name, or the path of a YAML file); InputError where unusable."""
+    path_of(source, "the name of an actuator, or the path of its description")
     with reading(source, FORM):
         text, label = _text(source)
         content = parsed(text, label, FORM).content

@@ -1,7 +1,7 @@
 """The gate that every input passes: kind of file, size, depth, counts, magnitudes; what is refused is one line."""
 
 from pierburg_ros.intake.bounds import check_count, check_magnitude
-from pierburg_ros.intake.gate import opened, reading, text_of
+from pierburg_ros.intake.gate import opened, path_of, reading, text_of
 from pierburg_ros.intake.table import lines, rows
 from pierburg_ros.intake.yaml_file import Document, parsed, read_yaml
 
@@ -12,6 +12,7 @@ __all__ = [
     "lines",
     "opened",
     "parsed",
+    "path_of",
     "read_yaml",
     "reading",
     "rows",

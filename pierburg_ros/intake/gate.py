@@ -75,6 +75,13 @@ def refuse_other_kinds(path: str | Path, status: os.stat_result, expected: str) 
         raise InputError(f"{path} is {kind}, expected {expected}. Give the path of a file.")
 
 
+def path_of(given: object, expected: str) -> Path:
+    """The path that was `given`; InputError where it is something else."""
+    if not isinstance(given, (str, os.PathLike)):
+        raise InputError(f"Found something of type {type(given).__name__}, expected {expected}. Give one of these.")
+    return Path(given)
+
+
 def text_of(path: str | Path, expected: str) -> str:
     """The text of a small file in UTF-8."""
     with opened(path, expected) as file:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Diagnosis(Result):
     """The verdict on recordings; `document` has every field of diagnosis.json, `found` the signals as well."""
 

@@ -13,7 +13,7 @@ from pierburg_ros.identification.identify import Identification as Found
 from pierburg_ros.identification.identify import identify as identified
 from pierburg_ros.inference.replay import parts_of
 from pierburg_ros.library.model import ActuatorLike, Model, ModelLike, chosen_model
-from pierburg_ros.library.reading import Readable, recordings_of
+from pierburg_ros.library.reading import Readable, names, recordings_of
 from pierburg_ros.library.result import Result
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.recording import Recording
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Identification(Result):
     """The parameters that recordings show, with intervals; `found` has all the numbers."""
 
@@ -111,8 +111,8 @@ def identify(
     *,
     actuator: ActuatorLike | None = None,
     model: ModelLike | None = None,
-    free: Sequence[str] = (),
-    fixed: Sequence[str] = (),
+    free: str | Sequence[str] = (),
+    fixed: str | Sequence[str] = (),
     jobs: int | None = None,
 ) -> Identification:
     """The parameters of an actuator that `recordings` show.
@@ -126,4 +126,4 @@ def identify(
     """
     start = chosen_model(model, actuator if actuator or model else "pierburg")
     measured = [part for each in recordings_of(recordings, start.actuator) for part in parts_of(each, start.actuator)]
-    return Identification(identified(start, measured, free, fixed, jobs), tuple(measured))
+    return Identification(identified(start, measured, tuple(names(free)), tuple(names(fixed)), jobs), tuple(measured))

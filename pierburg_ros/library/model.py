@@ -9,8 +9,10 @@ from typing import Any, TypeAlias
 from pierburg_ros import plant
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.errors import InputError
+from pierburg_ros.intake import path_of
 from pierburg_ros.library import exporting
 from pierburg_ros.library.exporting import Export
+from pierburg_ros.library.output import write_whole
 from pierburg_ros.plant.model_file import read_model
 
 
@@ -71,6 +73,10 @@ class Model(plant.Model):
         """The model with a residual torque: `angle` [rad], `velocity` [rad/s], `torque` [N.m] on their grid."""
         return Model.of(super().with_residual(residual_torque))
 
+    def write(self, path: str | Path) -> None:
+        """Write the model file, whole or not at all; its folder is made where it is missing."""
+        write_whole(path_of(path, "the path of a file"), self.text())
+
 
 ModelLike: TypeAlias = plant.Model | str | Path
 """A model, or the path of a model file."""
@@ -87,5 +93,5 @@ def chosen_model(model: ModelLike | None, actuator: ActuatorLike | None = None) 
     if model is not None:
         return Model.read(model, actuator)
     if actuator is None:
-        raise InputError("Found neither a model nor an actuator, expected one. Name the actuator pierburg.")
+        raise InputError("Found no model, expected one or the path of its file. Give pr.Model.nominal('pierburg').")
     return Model.nominal(actuator)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from pierburg_ros.actuators import Actuator
+from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.actuators.units import unit_of
 from pierburg_ros.errors import InputError, near
+from pierburg_ros.intake import path_of
 from pierburg_ros.library import recording
+from pierburg_ros.library.model import ActuatorLike
 from pierburg_ros.recording import Recording, read_recording
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
 from pierburg_ros.recording.signals import DRIVING, SIGNALS
@@ -25,8 +27,8 @@ def read(
     time: str | None = None,
     topics: Mapping[str, str] | None = None,
     signals: str | Path | Mapping[str, Any] | SignalMap | None = None,
-    actuator: Actuator | None = None,
-    exact: Sequence[str] = (),
+    actuator: ActuatorLike | None = None,
+    exact: str | Sequence[str] = (),
 ) -> recording.Recording:
     """The recording at `path`: an MCAP file, a rosbag2 directory, or a CSV.
 
@@ -40,16 +42,22 @@ def read(
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
-    chosen = signal_map(signals, topics or {})
-    preferred = () if actuator is None else (actuator.input, actuator.quantity)
-    if actuator is not None:
-        check_motion(chosen, actuator)
-    found = read_recording(path, time=time, signals=chosen, preferred=preferred)
-    found = replace(found, exact=found.exact | certain(exact))
+    place, chosen = path_of(path, "a recording, or the path of one"), signal_map(signals, topics or {})
+    described = actuator if actuator is None or isinstance(actuator, Actuator) else read_actuator(actuator)
+    preferred = () if described is None else (described.input, described.quantity)
+    if described is not None:
+        check_motion(chosen, described)
+    found = read_recording(place, time=time, signals=chosen, preferred=preferred)
+    found = replace(found, exact=found.exact | certain(names(exact)))
     return recording.Recording(**{**vars(found), "read_with": tuple(options(time, topics or {}, signals))})
 
 
-def certain(exact: Sequence[str]) -> frozenset[str]:
+def names(given: str | Collection[str]) -> Collection[str]:
+    """One or more names as several."""
+    return [given] if isinstance(given, str) else given
+
+
+def certain(exact: Collection[str]) -> frozenset[str]:
     """The inputs and quantities that are said to be exact, by the names of their signals."""
     for signal in exact:
         if signal not in SIGNALS:
@@ -83,7 +91,7 @@ def check_motion(chosen: SignalMap, actuator: Actuator) -> None:
 
 def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> list[Recording]:
     """One or more recordings of an `actuator` as a list, those given by path read; InputError where there is none."""
-    several = [given] if isinstance(given, (Recording, str, Path)) else list(given)
+    several = list(given) if isinstance(given, (Sequence, Iterator)) and not isinstance(given, str) else [given]
     if not several:
         raise InputError("There is no recording; expected one or more. Give recordings or their paths.")
     return [each if isinstance(each, Recording) else read(each, actuator=actuator) for each in several]

@@ -94,7 +94,7 @@ class Sampling:
         return sampled[sampled <= (self.duration or sampled[-1])]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Simulation(Result):
     """What the sensor of a simulated actuator gave, as a recording, and the model behind it."""
 

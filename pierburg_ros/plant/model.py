@@ -50,6 +50,8 @@ class Model:
 
     def with_values(self, changes: Mapping[str, float]) -> Model:
         """The model with some values changed; InputError where a name is unknown or a value not allowed."""
+        if not isinstance(changes, Mapping):
+            raise InputError(f"Found values as {type(changes).__name__}, expected a dict of them by name. Give one.")
         for name, value in changes.items():
             check(self.actuator, name, value)
         values = {**self.values, **changes}

@@ -12,7 +12,7 @@ from pierburg_ros.actuators import SHIPPED, Actuator, actuator_of, read_actuator
 from pierburg_ros.actuators.values import check
 from pierburg_ros.effects import EFFECT
 from pierburg_ros.errors import InputError, near
-from pierburg_ros.intake import check_magnitude, read_yaml, reading
+from pierburg_ros.intake import check_magnitude, path_of, read_yaml, reading
 from pierburg_ros.plant.model import Model
 
 SECTIONS = ("actuator", "parameters", "effects", "residual_torque")
@@ -23,7 +23,7 @@ def read_model(source: str | Path | Mapping[str, Any], actuator: Actuator | None
     """The model in `source`, a path or the content of a model file, of `actuator` where given."""
     if isinstance(source, Mapping):
         return _model(dict(source), actuator, "model", lambda *_: "", Path())
-    path = Path(source)
+    path = path_of(source, "a model, or the path of its file")
     with reading(path, FORM):
         document = read_yaml(path, FORM)
         if not isinstance(document.content, dict):

@@ -22,7 +22,7 @@ INPUTS = {"duty": "1", "current": "A", "torque": "N.m"}
 """Unit of each input that may drive a rotary actuator."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Channel:
     """Values that each hold from their time [s] until the next one's; both of shape (changes,)."""
 
@@ -50,7 +50,7 @@ class Channel:
         return Channel(self.time[first:last] - start, self.values[first:last]) if last > first else None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Recording:
     """Measured samples of the shaft and the signals that acted on it.
 

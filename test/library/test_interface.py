@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pierburg_ros as pr
@@ -87,6 +88,51 @@ def test_what_cannot_be_used_is_told_by_argument(tmp_path, call, said):
     with pytest.raises(pr.InputError) as refused:
         call(path)
     assert said in str(refused.value) and "--" not in str(refused.value)
+
+
+class Unlike:
+    """What is neither a path, nor a recording, a model or names."""
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda path: pr.read(None), "Found something of type NoneType, expected a recording, or the path of one"),
+        (lambda path: pr.read(Unlike()), "Found something of type Unlike"),
+        (lambda path: pr.read(path, actuator="valve"), "There is no actuator valve"),
+        (lambda path: pr.read(path, exact="duties"), "found 'duties', expected one of"),
+        (lambda path: pr.compare(Unlike(), pr.Model.nominal()), "expected a recording, or the path of one"),
+        (lambda path: pr.compare(path, Unlike()), "type Unlike, expected a model, or the path of its file"),
+        (lambda path: pr.identify(None), "type NoneType, expected a recording"),
+        (lambda path: pr.identify([path, None]), "type NoneType, expected a recording"),
+        (lambda path: pr.identify(path, fixed="torque"), "There is no parameter torque in"),
+        (lambda path: pr.identify(path, jobs="2"), "jobs is '2'; expected 1 or more, a whole number"),
+        (lambda path: pr.identify(path, jobs=1.5), "jobs is 1.5; expected 1 or more, a whole number"),
+        (lambda path: pr.simulate(None, duty=path), "Found no model, expected one or the path of its file"),
+        (lambda path: pr.Model.nominal(None), "type NoneType, expected the name of an actuator"),
+        (lambda path: pr.Model.nominal().with_values(None), "Found values as NoneType, expected a dict"),
+        (lambda path: pr.Model.nominal().with_values(["gear_ratio"]), "Found values as list, expected a dict"),
+        (lambda path: pr.Model.nominal().write(None), "type NoneType, expected the path of a file"),
+    ],
+)
+def test_what_is_of_another_kind_is_told_in_one_line(moving, call, said):
+    with pytest.raises(pr.InputError) as refused:
+        call(moving)
+    assert said in str(refused.value) and "\n" not in str(refused.value)
+
+
+@pytest.fixture(scope="module")
+def moving(tmp_path_factory):
+    """The table of a valve that moves."""
+    time = np.arange(0.0, 6.0, 0.004)
+    made = pr.simulate(pr.Model.nominal(), duty=0.3 * (time % 2.0 > 1.0), time=time)
+    path = tmp_path_factory.mktemp("moving") / "run.csv"
+    made.table().to_csv(path, index=False)
+    return path
+
+
+def test_an_actuator_of_a_recording_may_be_named(moving):
+    assert pr.read(moving, actuator="pierburg").quantity == "hall_voltage"
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

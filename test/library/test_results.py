@@ -51,6 +51,16 @@ def test_a_result_is_copied_and_pickled_with_all_its_numbers(result):
         assert made.model == result.model
 
 
+def test_a_result_and_its_recording_are_equal_to_themselves_alone(result, simulation):
+    for each in (result, simulation.recording, simulation.recording.command):
+        assert each == each and each != copy.deepcopy(each) and len({each, each}) == 1
+
+
+def test_a_model_is_written_into_a_folder_that_is_made(tmp_path):
+    pr.Model.nominal().write(tmp_path / "a" / "b" / "model.yaml")
+    assert pr.Model.read(tmp_path / "a" / "b" / "model.yaml") == pr.Model.nominal()
+
+
 def test_equal_models_are_one_key():
     worn = {"armature_resistance": 4.7}
     assert len({pr.Model.nominal(), pr.Model.nominal().with_values(worn), pr.Model.nominal().with_values(worn)}) == 2
