@@ -3,6 +3,7 @@
 import copy
 import json
 import pickle
+import re
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -12,6 +13,7 @@ import matplotlib.figure
 import numpy as np
 import plotly.graph_objects as go
 import pytest
+from support.documentation import ROOT
 
 import pierburg_ros as pr
 from pierburg_ros.cli.app import main
@@ -59,6 +61,13 @@ def test_a_result_and_its_recording_are_equal_to_themselves_alone(result, simula
 def test_a_model_is_written_into_a_folder_that_is_made(tmp_path):
     pr.Model.nominal().write(tmp_path / "a" / "b" / "model.yaml")
     assert pr.Model.read(tmp_path / "a" / "b" / "model.yaml") == pr.Model.nominal()
+
+
+def test_the_page_of_the_interface_lists_what_every_result_can_do():
+    page = (ROOT / "docs" / "library.md").read_text(encoding="utf-8").partition("## What every result can do")[2]
+    listed = {name for line in page.splitlines() if line.startswith("| `") for name in re.findall(r"(\w+)\(", line)}
+    own = {name for name in vars(Result) if not name.startswith("_")} - {"rows", "title", "write_into"}
+    assert listed & set(vars(Result)) == own
 
 
 def test_equal_models_are_one_key():
