@@ -20,6 +20,7 @@ from pierburg_ros.cli.options.recordings import (
     topics_of,
 )
 from pierburg_ros.cli.options.viewers import RerunOption
+from pierburg_ros.library.output import output_folder
 from pierburg_ros.library.result import Result
 from pierburg_ros.pages.listing import Listing
 
@@ -43,8 +44,9 @@ def replay(
 
     chosen, output = chosen_model(model, actuator), results_folder(output, "replay", recording)
     measured = read(recording, time=time, topics=topics_of(topic), signals=signals, actuator=chosen.actuator)
-    comparison = compare(measured, chosen)
-    comparison.save(output)
+    with output_folder(output) as folder:
+        comparison = compare(measured, chosen)
+        comparison.write_into(folder)
     if rerun:
         comparison.write_rerun(rerun)
     console = terminal()

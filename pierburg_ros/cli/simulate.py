@@ -11,6 +11,7 @@ import typer
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.models import ActuatorOption, ModelOption, chosen_model
 from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import output_folder
 
 
 def simulate(
@@ -38,20 +39,21 @@ def simulate(
     from pierburg_ros.library import simulation
 
     chosen = chosen_model(model, actuator)
-    began = time.perf_counter()
-    made = simulation.simulate(
-        chosen,
-        duty=duty,
-        setpoints=setpoints,
-        controller=controller,
-        duration=duration,
-        rate=rate,
-        noise=noise,
-        seed=seed,
-        initial_angle=initial_angle,
-    )
-    took = time.perf_counter() - began
-    made.save(output)
+    with output_folder(output) as folder:
+        began = time.perf_counter()
+        made = simulation.simulate(
+            chosen,
+            duty=duty,
+            setpoints=setpoints,
+            controller=controller,
+            duration=duration,
+            rate=rate,
+            noise=noise,
+            seed=seed,
+            initial_angle=initial_angle,
+        )
+        took = time.perf_counter() - began
+        made.write_into(folder)
     file = output / simulation.FILE
     terminal().print(f"{made.time[-1]:.2f} s simulated in {took:.3f} s, written to {file}", soft_wrap=True)
     return {"file": str(file), "duration": float(made.time[-1]), "samples": made.time.size}

@@ -1,7 +1,8 @@
 """Results on disk: whole or not there, whatever ends the run.
 
-A run works in a hidden folder beside its output and holds a lock on it, which the system takes back when the run ends,
-however it ends. So the next run can tell what a dead one left from what a living one needs.
+A run works in a hidden folder beside its output, or in it where nothing can be moved there from beside, and holds a
+lock on it, which the system takes back when the run ends, however it ends. So the next run can tell what a dead one
+left from what a living one needs.
 """
 
 from __future__ import annotations
@@ -38,8 +39,9 @@ def output_folder(output: Path) -> Iterator[Path]:
     made = [parent for parent in target.parents if not parent.exists()]
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        clear_left(target.parent)
-        with claimed(target) as hidden:
+        within = hiding_place(target)
+        clear_left(within)
+        with claimed(target, within) as hidden:
             (hidden / PARTIAL).mkdir()
             yield hidden / PARTIAL
             with undisturbed():
@@ -61,9 +63,24 @@ def refuse_unusable(output: Path, target: Path) -> None:
         raise InputError(f"{output} is a link that leads nowhere, expected a folder for the results. Remove it.")
     if target.exists() and not target.is_dir():
         raise InputError(f"{output} is a file, expected a folder for the results. Choose another folder.")
-    present = next(path for path in (target, *target.parents) if path.exists())
-    if not present.is_dir() or not os.access(present, os.W_OK | os.X_OK):
-        raise InputError(f"{output} cannot be written, since {present} cannot. Choose another folder.")
+    refuse_unwritable(output, target)
+
+
+def refuse_unwritable(output: Path, folder: Path) -> None:
+    """Refuse an output where no file can be made in its `folder`, or in the nearest one that is there."""
+    present = next(path for path in (folder, *folder.parents) if path.exists())
+    try:
+        tempfile.TemporaryFile(dir=present).close()  # of /proc the rights alone say yes
+    except OSError as error:
+        raise InputError(f"{output} cannot be written, since {present} cannot. Choose another place.") from error
+
+
+def hiding_place(target: Path) -> Path:
+    """The folder beside `target`, or `target` itself where nothing can be moved there from beside."""
+    beside = target.parent
+    movable = os.access(beside, os.W_OK | os.X_OK)
+    same_disk = not target.exists() or os.stat(target).st_dev == os.stat(beside).st_dev
+    return beside if movable and same_disk else target
 
 
 def full(output: Path, error: OSError) -> OSError | InputError:
@@ -74,14 +91,15 @@ def full(output: Path, error: OSError) -> OSError | InputError:
 
 
 @contextmanager
-def claimed(target: Path) -> Iterator[Path]:
-    """The hidden folder of `target`, empty and held by this run alone; gone after the block."""
-    hidden = target.parent / f"{HIDDEN}{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:16]}"
+def claimed(target: Path, within: Path) -> Iterator[Path]:
+    """The hidden folder of `target`, `within` a folder, empty and held by this run alone; gone after the block."""
+    name = os.fsencode(target.relative_to(within))
+    hidden = within / f"{HIDDEN}{hashlib.sha256(name).hexdigest()[:16]}"
     lock = taken(hidden)
     if lock is None:
         raise InputError(f"Another run writes into {target}. Wait until it has ended, or choose another folder.")
     try:
-        lock.write(os.fsencode(target.name))
+        lock.write(name)
         lock.flush()
         yield hidden
     finally:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.output import output_folder
+from pierburg_ros.library.output import output_folder, published
 
 COMMAND = """
 import os, signal, sys, time
@@ -139,6 +139,33 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(small_disk):
     assert words.count("\n") == 1 and left(small_disk) == []
 
 
+def test_a_disk_itself_takes_results_whole_and_from_one_run_alone(small_disk):
+    first = waiting(small_disk)
+    status, words = ended(start(small_disk))
+    assert status == 2 and "Another run writes into" in words
+    first.kill()
+    ended(first)
+    assert ended(start(small_disk)) == (0, "")
+    assert left(small_disk) == ["a", "b"]
+
+
+def test_a_run_into_a_disk_that_was_killed_while_it_published_is_finished_by_the_next(small_disk):
+    assert ended(start(small_disk, "killed while publishing"))[0] == -signal.SIGKILL
+    with output_folder(small_disk) as folder:
+        assert published(folder / "c") == small_disk / "c"
+        assert "b" in left(small_disk)
+    assert left(small_disk) == ["a", "b"]
+
+
+def test_a_folder_in_one_that_cannot_be_written_takes_results(tmp_path, monkeypatch):
+    (tmp_path / "out").mkdir()
+    monkeypatch.setattr("os.access", lambda path, mode: Path(path) != tmp_path)
+    with output_folder(tmp_path / "out") as folder:
+        (folder / "a").write_text("whole")
+        assert os.listdir(tmp_path) == ["out"]
+    assert left(tmp_path) == ["out", "out/a"]
+
+
 def test_outputs_that_cannot_be_are_refused_before_the_work(tmp_path):
     (tmp_path / "file").write_text("mine")
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
@@ -147,6 +174,7 @@ def test_outputs_that_cannot_be_are_refused_before_the_work(tmp_path):
         (tmp_path / "file", "is a file, expected a folder"),
         (tmp_path / "file" / "below", "cannot be written"),
         (tmp_path / "loop", "is a link that leads nowhere"),
+        (Path("/proc/x"), "/proc/x cannot be written, since /proc cannot. Choose another place."),
     ):
         with pytest.raises(InputError, match=reason), output_folder(output):
             raise AssertionError("the work began")

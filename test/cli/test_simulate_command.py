@@ -134,3 +134,8 @@ def test_simulates_the_valve_where_no_actuator_is_named(duty, tmp_path):
         assert run("--duty", duty, *actuator, "--output", tmp_path / name) == 0
     unnamed, named = (read_recording(tmp_path / name / "simulated.mcap") for name in ("unnamed", "named"))
     np.testing.assert_array_equal(unnamed.measured, named.measured)
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_the_work(capsys):
+    assert run("--duty", "none.mcap", "--output", "/proc/x") == 2
+    assert capsys.readouterr().err.endswith("/proc/x cannot be written, since /proc cannot. Choose another place.\n")
