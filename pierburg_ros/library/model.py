@@ -85,12 +85,19 @@ ActuatorLike: TypeAlias = Actuator | str | Path
 
 
 def chosen_model(model: ModelLike | None, actuator: ActuatorLike | None = None) -> Model:
-    """The model given, or the nominal one of `actuator`; both: the file's values for that actuator."""
+    """The model given, or the nominal one of `actuator`; both: the file's values for its actuator, described anew."""
     if isinstance(model, plant.Model):
         if actuator is not None:
             raise InputError("Found a model and an actuator, and a model has its actuator. Leave the actuator out.")
         return Model.of(model)
     if model is not None:
+        if actuator is not None:
+            own, given = (each.actuator.name for each in (Model.read(model), Model.nominal(actuator)))
+            if own != given:
+                raise InputError(
+                    f"{model} is a model of {own} and --actuator found {given}, expected a description of {own}."
+                    " A model has its actuator: leave --actuator out."
+                )
         return Model.read(model, actuator)
     if actuator is None:
         raise InputError("Found no model, expected one or the path of its file. Give pr.Model.nominal('pierburg').")

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from pierburg_ros.actuators import read_actuator
 from pierburg_ros.cli.app import main
+from pierburg_ros.library import model as library
 from pierburg_ros.plant import Inputs, Model, simulate
 from pierburg_ros.recording import read_recording, write_recording, write_simulated
 
@@ -119,6 +121,10 @@ def test_signals_are_named_by_option(at_rest, tmp_path):
         (["rest.mcap", "--model", "odd.yaml"], "armature_resistence"),
         (["rest.mcap", "--actuator", "xl330"], "rest.mcap holds a Hall voltage"),
         (
+            ["rest.mcap", "--model", "right.yaml", "--actuator", "xl330"],
+            "right.yaml is a model of pierburg and --actuator found xl330, expected a description of pierburg.",
+        ),
+        (
             ["rest.mcap", "--actuator", "pierburg", "--topic", "pwm"],
             "--topic found 'pwm', expected SIGNAL=NAME.",
         ),
@@ -131,10 +137,21 @@ def test_signals_are_named_by_option(at_rest, tmp_path):
 def test_bad_input_is_one_line_and_leaves_nothing(at_rest, tmp_path, capsys, monkeypatch, arguments, line):
     monkeypatch.chdir(tmp_path)
     Path("odd.yaml").write_text("actuator: pierburg\nparameters: {armature_resistence: 4.1}\n")
+    Path("right.yaml").write_text("actuator: pierburg\n")
     assert replay(*arguments, "--output", "out") == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1 and said.err.startswith("pierburg: ") and line in said.err
-    assert {path.name for path in tmp_path.iterdir()} == {"rest.mcap", "odd.yaml"}
+    assert {path.name for path in tmp_path.iterdir()} == {"rest.mcap", "odd.yaml", "right.yaml"}
+
+
+def test_a_model_file_takes_its_actuator_described_anew(at_rest, tmp_path):
+    description = resources.files("pierburg_ros.actuators") / "pierburg.yaml"
+    (tmp_path / "mine.yaml").write_text(description.read_text().replace("nominal: 4.139", "nominal: 3.8"))
+    (tmp_path / "model.yaml").write_text("actuator: pierburg\nparameters: {supply_voltage: 12.0}\n")
+    options = ("--model", tmp_path / "model.yaml", "--actuator", tmp_path / "mine.yaml", "--output", tmp_path / "out")
+    assert replay(at_rest, *options) == 0
+    found = library.Model.read(tmp_path / "out/model.yaml").values
+    assert (found["armature_resistance"], found["supply_voltage"]) == (3.8, 12.0)
 
 
 @pytest.mark.skipif(not XL330.exists(), reason="the measured XL330 runs are not beside this checkout")
