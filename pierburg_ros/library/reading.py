@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any, TypeAlias
+
+import numpy as np
 
 from pierburg_ros.actuators import Actuator, read_actuator
 from pierburg_ros.actuators.units import unit_of
@@ -14,6 +17,7 @@ from pierburg_ros.intake import path_of
 from pierburg_ros.library import recording
 from pierburg_ros.library.model import ActuatorLike
 from pierburg_ros.recording import Recording, read_recording
+from pierburg_ros.recording.recording import Samples
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
 from pierburg_ros.recording.signals import DRIVING, SIGNALS
 
@@ -94,7 +98,24 @@ def recordings_of(given: Readable | Sequence[Readable], actuator: Actuator) -> l
     several = list(given) if isinstance(given, (Sequence, Iterator)) and not isinstance(given, str) else [given]
     if not several:
         raise InputError("There is no recording; expected one or more. Give recordings or their paths.")
-    return [each if isinstance(each, Recording) else read(each, actuator=actuator) for each in several]
+    found = [each if isinstance(each, Recording) else read(each, actuator=actuator) for each in several]
+    refuse_repeated(found)
+    return found
+
+
+def refuse_repeated(recordings: Sequence[Recording]) -> None:
+    """Refuse a recording that is given twice: its samples would count as twice as many, and narrow every interval."""
+    for first, second in combinations(recordings, 2):
+        if all(map(np.array_equal, signals_of(first), signals_of(second))):
+            raise InputError(
+                f"{first.name} and {second.name} are the same recording, expected different ones: its samples would"
+                " count twice. Leave one out."
+            )
+
+
+def signals_of(recording: Recording) -> tuple[Samples, ...]:
+    """Times [s] and values of what was measured and of what drove it, each of shape (samples,) or (changes,)."""
+    return recording.time, recording.measured, recording.command.time, recording.command.values
 
 
 def taken_up(measured: Recording) -> str:

@@ -39,3 +39,12 @@ def test_a_length_is_refused_for_a_rotary_actuator_and_an_angle_for_a_linear_one
     assert pr.read(table, signals=angle, actuator=rotary).measured[-1] == pytest.approx(np.pi / 6)
     with pytest.raises(pr.InputError, match="signals: position is in a unit of rad, expected one of m"):
         pr.read(table, signals=angle, actuator=linear)
+
+
+@pytest.mark.parametrize("function", [pr.diagnose, pr.identify])
+def test_a_recording_given_twice_is_refused(function, tmp_path):
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_text("time,duty,hall_voltage\n0,0,1\n1,0.1,1\n2,0,1.1\n")
+    for first, second in ("aa", "ab"):
+        with pytest.raises(pr.InputError, match=f"{first}.csv and {second}.csv are the same recording, expected diff"):
+            function([tmp_path / f"{first}.csv", tmp_path / f"{second}.csv"])
