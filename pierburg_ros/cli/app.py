@@ -199,6 +199,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     typed = " ".join(os.environ.get(name, "") for name in COMPLETING).split()
     called = next((argument for argument in (*typed, *given) if argument in COMMANDS), None)
     try:
+        refuse_empty(given)
         with terminable():
             status = application(called)(given, prog_name="pierburg", standalone_mode=False)
     except InputError as error:
@@ -232,6 +233,14 @@ def spread(arguments: Sequence[str]) -> list[str]:
             found.append(option)
         found.append(argument)
     return found
+
+
+def refuse_empty(arguments: Sequence[str]) -> None:
+    """Raise InputError for an argument without a character, which as a path would be the present folder."""
+    for before, argument in zip(["pierburg", *arguments], arguments, strict=False):
+        option = argument.partition("=")[0]
+        if not argument or (option.startswith("--") and argument == f"{option}="):
+            raise InputError(f"Found nothing in the argument behind {option or before}, expected a value. Give one.")
 
 
 def show_log() -> None:

@@ -22,6 +22,7 @@ from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows,
 from pierburg_ros.fleets.task import Task
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole
+from pierburg_ros.library.paths import given_path
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.signal_map import signal_map
@@ -120,14 +121,15 @@ def fleet(
         fleet.table("ageing")
     """
     require_parquet()
+    folder = given_path(output, "output")
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     stated = checked_limits(limits or {}, nominal)
     found = sources(str(where), pattern)
-    task = Task(nominal, Budget.of(budget), Path(output) / RECORDINGS, time, signal_map(signals, topics or {}))
-    store = Store(Path(output))
+    task = Task(nominal, Budget.of(budget), folder / RECORDINGS, time, signal_map(signals, topics or {}))
+    store = Store(folder)
     examined = conduct(found, task, store, Where(jobs, scheduler), progress or (lambda *_: None))
     made = fleet_of(examined, nominal, stated)
-    made.write_into(Path(output))
+    made.write_into(folder)
     return made
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from pierburg_ros.export import Exported
 from pierburg_ros.export import export as exporting
 from pierburg_ros.library.output import write_whole
+from pierburg_ros.library.paths import given_path
 from pierburg_ros.plant import Model
 
 
@@ -29,7 +30,7 @@ class Export:
 
     def write(self, path: str | Path) -> None:
         """Write the file, whole or not at all."""
-        write_whole(Path(path), self.text)
+        write_whole(given_path(path, "path"), self.text)
 
 
 def export(model: Model, to: str) -> Export:

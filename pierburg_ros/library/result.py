@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pierburg_ros.library.output import output_folder
+from pierburg_ros.library.paths import given_path
 
 if TYPE_CHECKING:
     import pandas
@@ -55,7 +56,7 @@ class Result(ABC):
 
         The folder is made where it is missing; other files in it stay. InputError where it is a file.
         """
-        with output_folder(Path(folder)) as temporary:
+        with output_folder(given_path(folder, "folder")) as temporary:
             self.write_into(temporary)
 
     def plot(self) -> go.Figure:

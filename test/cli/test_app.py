@@ -135,6 +135,20 @@ def test_an_output_that_is_a_file_is_refused(tmp_path):
     assert (tmp_path / "out").read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    ("arguments", "before"),
+    [
+        (["tune", "-o", ""], "-o"),
+        (["tune", "--output="], "--output"),
+        (["replay", "", "-o", "x"], "replay"),
+    ],
+)
+def test_an_empty_argument_is_refused_and_named(capsys, arguments, before):
+    assert ending(arguments) == 2
+    line = f"pierburg: Found nothing in the argument behind {before}, expected a value. Give one.\n"
+    assert capsys.readouterr().err == line
+
+
 def test_topics_are_named_by_role():
     assert topics_of(["duty=/a/pwm", "hall_voltage=/b"]) == {"duty": "/a/pwm", "hall_voltage": "/b"}
     with pytest.raises(InputError, match=r"--topic found '/a/pwm', expected SIGNAL=NAME"):

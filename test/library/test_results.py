@@ -7,6 +7,7 @@ import re
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from html.parser import HTMLParser
 
 import matplotlib.figure
@@ -125,6 +126,13 @@ def test_saving_writes_all_files_or_none(comparison, tmp_path, monkeypatch):
     with pytest.raises(OSError, match="no space left"):
         comparison.save(tmp_path / "other")
     assert [path.name for path in tmp_path.iterdir()] == ["made"]
+
+
+def test_an_empty_path_is_refused_and_named(simulation, stiff):
+    uses = (pr.read, "path"), (simulation.save, "folder"), (stiff.export("json").write, "path")
+    for use, argument in (*uses, (partial(pr.fleet, "recordings"), "output")):
+        with pytest.raises(pr.InputError, match=f"`{argument}` is empty, expected a path"):
+            use("")
 
 
 @pytest.fixture
