@@ -45,8 +45,14 @@ def naming_arguments(function: Callable[Given, Found]) -> Callable[Given, Found]
 
 
 def by_argument(message: str) -> str:
+    """A message that names arguments where it names options; a command in quotes, 'pierburg ...', stays as it is."""
+    parts = re.split(r"('pierburg [^']*')", message)
+    return "".join(part if number % 2 else of_argument(part) for number, part in enumerate(parts))
+
+
+def of_argument(text: str) -> str:
     """`--topic duty=/pwm` as `topics={'duty': '/pwm'}`, any other `--option` as the argument in backquotes."""
-    text = re.sub(r"--topic (\w+)=([^\s.;,]+)", r"topics={'\1': '\2'}", message)
+    text = re.sub(r"--topic (\w+)=([^\s.;,]+)", r"topics={'\1': '\2'}", text)
     return re.sub(r"--([a-z][a-z-]*)", lambda found: f"`{ARGUMENTS.get(found[1], found[1].replace('-', '_'))}`", text)
 
 

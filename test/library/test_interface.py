@@ -135,6 +135,12 @@ def test_an_actuator_of_a_recording_may_be_named(moving):
     assert pr.read(moving, actuator="pierburg").quantity == "hall_voltage"
 
 
+def test_a_command_in_a_message_keeps_its_options(tmp_path):
+    (tmp_path / "run.csv").write_text("time,duty\n0,0\n")
+    with pytest.raises(pr.InputError, match=rf"'pierburg inspect {tmp_path.name} --write-signals FILE' writes one"):
+        pr.read(tmp_path)
+
+
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_every_function_is_typed_and_documents_each_argument_and_an_example(name):
     function = getattr(pr, name)

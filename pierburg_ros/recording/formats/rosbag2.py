@@ -83,7 +83,7 @@ def listed_in(folder: Path) -> Listed:
         if any(folder.glob("*.csv")):
             raise InputError(
                 f"{folder.name} is a folder of tables, expected a signal map that says which file each signal is in."
-                f" pierburg inspect {folder.name} --write-signals FILE writes one to edit."
+                f" 'pierburg inspect {folder.name} --write-signals FILE' writes one to edit."
             )
         raise InputError(
             f"{folder.name} is a folder without metadata.yaml ({len(present)} MCAP files), expected a rosbag2"
