@@ -48,3 +48,12 @@ def test_a_recording_given_twice_is_refused(function, tmp_path):
     for first, second in ("aa", "ab"):
         with pytest.raises(pr.InputError, match=f"{first}.csv and {second}.csv are the same recording, expected diff"):
             function([tmp_path / f"{first}.csv", tmp_path / f"{second}.csv"])
+
+
+@pytest.mark.parametrize("samples", [2, 5])
+def test_a_recording_of_a_few_samples_is_too_short_and_lacks_none(samples, tmp_path):
+    rows = "".join(f"{k},0.1,{1 + k}\n" for k in range(samples))
+    (tmp_path / "few.csv").write_text(f"time,duty,hall_voltage\n{rows}")
+    for use in (lambda path: pr.compare(path, pr.Model.nominal()), pr.identify):
+        with pytest.raises(pr.InputError, match=rf"few.csv is too short \({samples} samples\), expected at least"):
+            use(tmp_path / "few.csv")
