@@ -183,8 +183,8 @@ def _limits_of_sampling(runs: Sequence[Run], actuator: Actuator) -> list[Limit]:
         limits.append(
             Limit(
                 "slow_sampling",
-                f"The signal is sampled at {1.0 / median:.3g} Hz: short delays and lags cannot be told apart (they"
-                f" could at {WANTED * SLOW_SAMPLING / scales.time:.2g} Hz).",
+                f"The signal is sampled at {_hertz(1.0 / median, 3)}: short delays and lags cannot be told apart (they"
+                f" could at {_hertz(WANTED * SLOW_SAMPLING / scales.time, 2)}).",
             )
         )
     lost = float(np.sum(intervals[intervals > GAP * median]))
@@ -238,6 +238,11 @@ def excited(motions: Sequence[Motion]) -> str:
         pulled = any(np.any(motion.closed & (motion.command < 0.0)) for motion in motions)
         parts.append(f"negative {actuator.input} at the closed stop: {'yes' if pulled else 'no'}")
     return ", ".join(parts)
+
+
+def _hertz(rate: float, digits: int) -> str:
+    """A rate rounded to so many digits, without an exponent."""
+    return f"{float(f'{rate:.{digits}g}'):g} Hz"
 
 
 def _at_limit(motion: Motion) -> Flags:

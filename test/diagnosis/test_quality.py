@@ -63,6 +63,11 @@ def test_says_what_short_slow_and_narrow_recordings_leave_open():
     assert "constant_duty" in kinds(run_along())
 
 
+def test_a_rate_has_no_exponent():
+    slow = next(each for each in limits_of([run_along(rate=60.0)], PIERBURG, NOISE) if each.kind == "slow_sampling")
+    assert "sampled at 60 Hz" in slow.finding and "(they could at 500 Hz)" in slow.finding
+
+
 def test_an_actuator_without_stops_lacks_none():
     bench = read_actuator("xl330")
     run = run_along(duty=swinging)
