@@ -75,7 +75,9 @@ def experiment(
     Writes duty.csv or setpoints.csv and the recording. With --discriminate it designs the duty sequence and explains
     it. It then records only if asked: over the graph with --graph, simulated with --model.
     """
-    if (name is None) == (discriminate is None) or output is None:
+    if name is not None and discriminate is not None:
+        raise InputError(f"Found recipe {name} with --discriminate, which designs a sequence. Leave one of them out.")
+    if (name is None and discriminate is None) or output is None:
         raise InputError(
             "experiment found not both a recipe (or --discriminate A B) and --output, expected both. Write"
             " pierburg experiment rich --output DIR."
@@ -129,6 +131,8 @@ def designed(
 ) -> Sequence:
     """The sequence that best separates the explanations `names`, explained in words and a picture."""
     first, second = (explanation(name, base) for name in names)
+    if first.as_mapping() == second.as_mapping():
+        raise InputError(f"--discriminate found {names[0]} and {names[1]}, the same model. Name two that differ.")
     with progress() as show:
         design = design_sequence(
             first, second, duration, rate, noise or 1e-6, limit, lambda what: show(Step("designing", what=what))

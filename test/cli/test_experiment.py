@@ -55,11 +55,15 @@ def test_a_design_is_explained_and_recorded_only_with_a_model(tmp_path, capsys):
         (("stairs", "--output", "x"), "There is no recipe stairs; expected one of staircase"),
         (("rich",), "expected both"),
         (("--discriminate", "wear", "nominal", "--output", "x"), "wear is neither an effect nor a model"),
+        (("--discriminate", "nominal", "nominal", "--output", "x"), "found nominal and nominal, the same model."),
+        (("--discriminate", "nominal", "n.yaml", "--output", "x"), "found nominal and n.yaml, the same model."),
+        (("steps", "--discriminate", "a", "b", "--output", "x"), "Found recipe steps with --discriminate"),
         (("square", "--actuator", "xl330", "--output", "x"), "Recipe square needs the controller"),
     ],
 )
 def test_refusals_are_one_line_and_leave_nothing(arguments, reason, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "n.yaml").write_text("actuator: pierburg\n")
     assert run("experiment", *arguments) == 2
     error = capsys.readouterr().err
     assert reason in error
