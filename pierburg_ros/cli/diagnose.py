@@ -38,6 +38,7 @@ DRAWING = ("pierburg_ros.diagnosis.report.page", "pierburg_ros.diagnosis.report.
 
 
 def diagnose(
+    context: typer.Context,
     recordings: Annotated[list[Path], typer.Argument(help="MCAP, rosbag2 directories or CSV, of one actuator.")],
     output: ResultsOption = None,
     simulation: Annotated[
@@ -70,6 +71,9 @@ def diagnose(
     from pierburg_ros.diagnosis.report.terminal import shown
     from pierburg_ros.library.reading import read
 
+    budgeted = context.get_parameter_source("budget")
+    if thorough and budgeted is not None and budgeted.name == "COMMANDLINE":
+        raise InputError("Found --thorough with --budget, expected one of them: it has no limit. Leave one out.")
     nominal, output = chosen_model(model, actuator), results_folder(output, "diagnose", recordings[0])
     if simulation_signals and not simulation:
         raise InputError("Found --simulation-signals without --simulation. Name the recordings of your simulator.")

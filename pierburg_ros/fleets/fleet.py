@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pierburg_ros.actuators.values import check
 from pierburg_ros.budget import USUAL_BUDGET, Budget
 from pierburg_ros.effects import DECLARED
 from pierburg_ros.errors import InputError, near
@@ -149,10 +150,14 @@ def checked_limits(limits: Mapping[str, float], nominal: Model) -> dict[str, flo
     """The limits, or InputError where one is of no quantity that has a course."""
     base = list(nominal.actuator.parameters)
     known = [*base, *(name for name in DECLARED if is_strength(name))]
-    for name in limits:
+    for name, value in limits.items():
         if name not in known:
             raise InputError(
                 f"--limit found {name}, expected a base parameter ({', '.join(base)}) or an effect's strength."
                 f"{near(name, known)}"
             )
+        try:
+            check(nominal.actuator, name, float(value))
+        except InputError as error:
+            raise InputError(f"--limit: {error}") from None
     return dict(limits)

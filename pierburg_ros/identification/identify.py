@@ -146,6 +146,8 @@ def free_names(model: Model, free: Sequence[str] = (), fixed: Sequence[str] = ()
     """The parameters to fit: the actuator's free ones except HELD, those of effects that act, and `free`."""
     for name in (*free, *fixed):
         model.range(name)
+    if both := [name for name in free if name in fixed]:
+        raise InputError(f"Found {both[0]} in --free and in --fix, expected it in one of them. Leave one out.")
     base = [name for name in model.actuator.free if name not in HELD]
     effects = [
         f"{effect}.{parameter.name}"

@@ -23,6 +23,8 @@ def test_limits_are_told_by_name():
     [
         (["none"], "none is no folder"),
         (["none", "--limit", "resistance=5"], "--limit found resistance"),
+        (["none", "--limit", "armature_resistance=nan"], "--limit: armature_resistance is nan"),
+        (["none", "--limit", "backlash.gap=-1"], "--limit: backlash.gap is -1"),
         (["none", "--pattern", "{what}"], "is no folder"),
     ],
 )

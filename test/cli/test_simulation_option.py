@@ -56,6 +56,7 @@ def test_other_options_keep_their_values():
         (("real.csv", "--output", "out", "--simulation", "none.csv"), "none.csv"),
         (("--output", "out", "--simulation", "one.csv", "real.csv"), "Missing argument '"),
         (("real.csv", "--output", "out", "--simulation-signals", "m.yaml"), "without --simulation"),
+        (("real.csv", "--output", "out", "--thorough", "--budget", "1"), "Found --thorough with --budget"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(files, capsys, arguments, line):

@@ -75,3 +75,8 @@ def test_a_shaft_that_does_not_move_is_refused(nominal):
 def test_an_unknown_parameter_is_refused(nominal):
     with pytest.raises(InputError, match="There is no parameter bearing"):
         free_names(nominal, free=["bearing"])
+
+
+def test_a_parameter_both_free_and_fixed_is_refused(nominal):
+    with pytest.raises(InputError, match="Found supply_voltage in --free and in --fix, expected it in one of them"):
+        free_names(nominal, free=["supply_voltage"], fixed=["supply_voltage"])
