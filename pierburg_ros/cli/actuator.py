@@ -15,7 +15,7 @@ from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.jobs import JobsOption
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, topics_of
 from pierburg_ros.errors import InputError
-from pierburg_ros.library.output import write_whole
+from pierburg_ros.library.output import refuse_no_file, write_whole
 from pierburg_ros.pages.listing import Listing
 from pierburg_ros.pages.numbers import number, unit
 
@@ -55,6 +55,7 @@ def actuator(
         return check(console, file)
     if file.exists() and not overwrite:
         raise InputError(f"{file} is there already, expected a new file. Name another one, or add --overwrite.")
+    refuse_no_file(file)
     from pierburg_ros.actuators import read_actuator
     from pierburg_ros.actuators.writing import description_text
     from pierburg_ros.identification.description.questions import answered

@@ -12,6 +12,7 @@ from rich.console import Console
 from pierburg_ros.cli.console.terminal import terminal
 from pierburg_ros.cli.options.recordings import SignalsOption, TimeOption, TopicOption, faults_first, topics_of
 from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import refuse_no_file, write_whole
 from pierburg_ros.pages.listing import Listing
 
 if TYPE_CHECKING:
@@ -37,11 +38,13 @@ def inspect(
 
     --write-signals FILE writes a signal map with these guesses, which every command takes with --signals.
     """
+    if write_signals is not None:
+        refuse_present(write_signals)
     from pierburg_ros.recording.inspection import inspect as inspected
 
     found = inspected(recording, time=time, topics=topics_of(topic), signals=signals)
     if write_signals is not None:
-        write(write_signals, found.signals)
+        write_whole(write_signals, found.signals)
     shown(terminal(), recording, found, actuator, write_signals, mapped=signals is not None)
     return found.as_mapping()
 
@@ -69,13 +72,11 @@ def shown(
         console.print(advice, soft_wrap=True)
 
 
-def write(path: Path, text: str) -> None:
-    """Write a signal map; one that is there, edited perhaps, stays."""
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise InputError(f"{path} exists, expected a new name for the signal map. Choose another.") from None
+def refuse_present(path: Path) -> None:
+    """Raise InputError where a signal map cannot be written; one that is there, edited perhaps, stays."""
+    refuse_no_file(path)
+    if path.exists():
+        raise InputError(f"{path} exists, expected a new name for the signal map. Choose another.")
 
 
 def table(found: Inspection) -> Listing:

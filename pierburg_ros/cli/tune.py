@@ -27,7 +27,7 @@ from pierburg_ros.closed_loop.tune import tune as find_settings
 from pierburg_ros.control import Settings, parameter_file, read_parameter_file
 from pierburg_ros.errors import InputError
 from pierburg_ros.executors import Lost, ended
-from pierburg_ros.library.output import write_whole
+from pierburg_ros.library.output import refuse_no_file, write_whole
 from pierburg_ros.pages.listing import Listing
 
 
@@ -76,8 +76,8 @@ def tune(
     of a comparison is tuned by one worker.
     """
     for path in (output, compare):
-        if path is not None and path.is_dir():
-            raise InputError(f"{path} is a folder, expected a file. Name the file to write.")
+        if path is not None:
+            refuse_no_file(path)
     goal = Goal(settling, overshoot / 100.0, math.radians(steady_state_error), math.radians(hunting))
     in_use = Settings() if controller is None else read_parameter_file(controller)
     effort = Effort(generations, members, seed, jobs)

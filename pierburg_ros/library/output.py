@@ -66,6 +66,14 @@ def refuse_unusable(output: Path, target: Path) -> None:
     refuse_unwritable(output, target)
 
 
+def refuse_no_file(output: Path) -> None:
+    """Refuse an output that cannot become a file, before anything is computed; a device is written as it is."""
+    if output.is_dir():
+        raise InputError(f"{output} is a folder, expected a file to write. Add a name.")
+    if output.is_file() or not output.exists():
+        refuse_unwritable(output, output.absolute().parent)
+
+
 def refuse_unwritable(output: Path, folder: Path) -> None:
     """Refuse an output where no file can be made in its `folder`, or in the nearest one that is there."""
     present = next(path for path in (folder, *folder.parents) if path.exists())
@@ -177,7 +185,10 @@ def undisturbed() -> Iterator[None]:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file at once, or not at all."""
+    """Write a file at once, or not at all; what is no file, such as /dev/stdout, as it is."""
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
     try:

@@ -133,6 +133,21 @@ def test_a_command_without_an_output_writes_its_document(replaced, tmp_path, cap
     assert "is a folder, expected a file" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("inspect", "none.mcap", "-o"),
+        ("inspect", "none.mcap", "--write-signals"),
+        ("tune", "--controller", "none.yaml", "-o"),
+        ("actuator", "new"),
+    ],
+)
+def test_a_file_that_cannot_be_written_is_refused_before_the_work(arguments, capsys):
+    assert ending(*arguments, "/proc/x/y") == 2
+    line = "pierburg: /proc/x/y cannot be written, since /proc cannot. Choose another place.\n"
+    assert capsys.readouterr().err == line
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_misspelt_command_is_suggested(name, capsys):
     assert ending(name[:-1] + "x") == 2

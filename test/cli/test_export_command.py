@@ -35,6 +35,12 @@ def test_writes_the_file_and_says_so(model, tmp_path, capsys, to):
     assert f"Written to {output}" in capsys.readouterr().out
 
 
+def test_a_device_is_written_and_stays_one(model, tmp_path):
+    (tmp_path / "link").symlink_to("/dev/null")
+    assert run(model, "--to", "json", "--output", tmp_path / "link") == 0
+    assert (tmp_path / "link").is_char_device()
+
+
 def test_what_the_format_cannot_hold_is_listed_by_effect_and_parameter(model, tmp_path, capsys):
     assert run(model, "--to", "urdf", "--output", tmp_path / "valve.urdf") == 0
     told, written = capsys.readouterr().out, (tmp_path / "valve.urdf").read_text()

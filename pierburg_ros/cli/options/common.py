@@ -22,7 +22,7 @@ from typing import Annotated, Any, get_args, get_origin
 import typer
 
 from pierburg_ros.cli.console.terminal import loudness
-from pierburg_ros.errors import InputError
+from pierburg_ros.library.output import refuse_no_file, write_whole
 
 OUTPUT = ("--output", "-o")
 QUIET = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
@@ -44,13 +44,14 @@ def with_common(function: Callable[..., Any]) -> Callable[..., None]:
     @wraps(function)
     def command(*arguments: Any, quiet: bool = False, as_json: bool = False, **given: Any) -> None:
         into = None if has_output else given.pop("output", None)
-        refuse_folder(into)
+        if into is not None:
+            refuse_no_file(into)
         with loudness(results=not (quiet or as_json), progress=not quiet):
             document = function(*arguments, **given)
         if as_json:
             sys.stdout.write(text(document))
         if into is not None:
-            into.write_text(text(document), encoding="utf-8")
+            write_whole(into, text(document))
 
     added = [keyword_only(name, annotation) for name, annotation in extra.items()]
     parameters = [*own, *added]
@@ -84,9 +85,3 @@ def text(document: Any) -> str:
     if isinstance(document, str):
         return document if document.endswith("\n") else f"{document}\n"
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
-
-
-def refuse_folder(path: Path | None) -> None:
-    """Raise InputError where a document cannot become a file, before the work."""
-    if path is not None and path.is_dir():
-        raise InputError(f"{path} is a folder, expected a file for the result document. Add a name.")
