@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -31,13 +32,16 @@ def _section(name: str, command: Any) -> str:
 
 
 def _row(parameter: Any) -> tuple[str, str, str]:
-    names = parameter.opts if parameter.param_type_name == "option" else [(parameter.metavar or parameter.name).upper()]
+    is_option = parameter.param_type_name == "option"
+    options = [*parameter.opts, *parameter.secondary_opts]
+    names = options if is_option else [(parameter.metavar or parameter.name).upper()]
     needed = "needed" if parameter.required else _default(parameter)
     return ", ".join(code(name) for name in names), needed, (parameter.help or "").replace("\n", " ")
 
 
 def _default(parameter: Any) -> str:
-    value = parameter.default
-    if isinstance(value, bool) or value == "" or not isinstance(value, (int, float, str)):
+    shown = getattr(parameter, "show_default", None)
+    value = shown if isinstance(shown, str) else parameter.default
+    if isinstance(value, bool) or value == "" or not isinstance(value, (int, float, str, Path)):
         return ""
     return f"default {value}"

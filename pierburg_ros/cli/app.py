@@ -22,6 +22,7 @@ import typer
 
 from pierburg_ros.cli.console.endings import INTERRUPTED, SIGNALS, TERMINATED, Terminated, refuse, terminable, usage
 from pierburg_ros.errors import InputError
+from pierburg_ros.starting import NODES
 
 SPREAD = ("--simulation",)
 """Options that take every value up to the next option."""
@@ -51,7 +52,7 @@ COMMANDS = {
         examples=("pierburg demo", "pierburg demo -o results/demo --json"),
     ),
     "run": Command(
-        "Start one of the nodes: plant, controller or recorder.",
+        f"Start one of the nodes: {', '.join(NODES)}.",
         {"allow_extra_args": True, "ignore_unknown_options": True},
         (
             "pierburg run plant --ros-args -p rate:=1000.0",

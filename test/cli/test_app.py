@@ -12,6 +12,7 @@ from pierburg_ros.cli.options import models
 from pierburg_ros.cli.options.recordings import topics_of
 from pierburg_ros.errors import InputError
 from pierburg_ros.library.output import output_folder
+from pierburg_ros.starting import NODES
 
 LATER = {"experiment", "prove", "tune"}
 """Commands whose help loads what they work with."""
@@ -133,6 +134,10 @@ def test_an_output_that_is_a_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="out is a file, expected a folder"), output_folder(tmp_path / "out"):
         pass
     assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_the_list_of_commands_names_every_node():
+    assert all(node in app.COMMANDS["run"].summary for node in NODES)
 
 
 @pytest.mark.parametrize(

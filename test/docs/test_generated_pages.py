@@ -30,6 +30,12 @@ def test_the_reference_is_written_from_the_code(name):
     assert name in write["WRITTEN"]
 
 
+def test_the_reference_of_commands_has_defaults_in_words_and_negative_forms():
+    text = (DOCS / "reference" / "commands.md").read_text(encoding="utf-8")
+    assert "| `--output`, `-o` | default results/demo |" in text
+    assert "| `--predictor`, `--no-predictor` |" in text
+
+
 def test_the_python_reference_has_every_public_name():
     text = (DOCS / "reference" / "python.md").read_text(encoding="utf-8")
     assert set(re.findall(r":: pierburg_ros\.(\w+)", text)) == set(pr.__all__)
