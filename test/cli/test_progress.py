@@ -30,6 +30,7 @@ def test_the_time_left_follows_from_the_pace_unless_it_is_told():
     assert Step("searching", 10, 40).timed(20.0).left == pytest.approx(60.0)
     assert Step("searching", 10, 40, left=5.0).timed(20.0).left == 5.0
     assert Step("searching", 10).timed(20.0).left is None
+    assert Step("searching", 1, 4).timed(0.0).left is None
 
 
 def test_a_log_has_a_line_for_each_stage_and_one_now_and_then(log):

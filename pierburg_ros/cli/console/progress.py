@@ -44,8 +44,11 @@ class Step:
         return ", ".join(part for part in (self.counted, self.best, left) if part)
 
     def timed(self, gone: float) -> Step:
-        """The step with the time that is left, if each piece takes as long as in the time [s] since the stage began."""
-        if self.left is not None or not self.done or self.about is None:
+        """The step with the time that is left, if each piece takes as long as in the time [s] since the stage began.
+
+        The first step of a stage shows no pace.
+        """
+        if self.left is not None or not self.done or self.about is None or gone <= 0.0:
             return self
         return replace(self, left=gone / self.done * max(self.about - self.done, 0))
 
