@@ -21,9 +21,9 @@ from pierburg_ros.fleets.run import Examined, Report, Where, conduct
 from pierburg_ros.fleets.store import RECORDINGS, Store
 from pierburg_ros.fleets.table import ageing_rows, finding_rows, recording_rows, require_parquet, write_parquet
 from pierburg_ros.fleets.task import Task
+from pierburg_ros.intake import path_of
 from pierburg_ros.library.model import ActuatorLike, ModelLike, chosen_model
 from pierburg_ros.library.output import write_whole
-from pierburg_ros.library.paths import given_path
 from pierburg_ros.library.tables import data_frame
 from pierburg_ros.plant import Model
 from pierburg_ros.recording.signal_map import signal_map
@@ -122,7 +122,7 @@ def fleet(
         fleet.table("ageing")
     """
     require_parquet()
-    folder = given_path(output, "output")
+    folder = path_of(output, "the folder for the results")
     nominal = chosen_model(model, actuator if actuator or model else "pierburg")
     stated = checked_limits(limits or {}, nominal)
     found = sources(str(where), pattern)

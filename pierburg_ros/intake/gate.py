@@ -76,7 +76,9 @@ def refuse_other_kinds(path: str | Path, status: os.stat_result, expected: str) 
 
 
 def path_of(given: object, expected: str) -> Path:
-    """The path that was `given`; InputError where it is something else."""
+    """The path that was `given`; InputError where it is something else, or empty, which would be the present folder."""
+    if given == "":
+        raise InputError(f"Found an empty path, expected {expected}. Name a file or a folder.")
     if not isinstance(given, (str, os.PathLike)):
         raise InputError(f"Found something of type {type(given).__name__}, expected {expected}. Give one of these.")
     return Path(given)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pierburg_ros.export import Exported
 from pierburg_ros.export import export as exporting
+from pierburg_ros.intake import path_of
 from pierburg_ros.library.output import write_whole
-from pierburg_ros.library.paths import given_path
 from pierburg_ros.plant import Model
 
 
@@ -30,7 +30,7 @@ class Export:
 
     def write(self, path: str | Path) -> None:
         """Write the file, whole or not at all."""
-        write_whole(given_path(path, "path"), self.text)
+        write_whole(path_of(path, "the path of a file"), self.text)
 
 
 def export(model: Model, to: str) -> Export:

@@ -16,7 +16,6 @@ from pierburg_ros.errors import InputError, near
 from pierburg_ros.intake import path_of
 from pierburg_ros.library import recording
 from pierburg_ros.library.model import ActuatorLike
-from pierburg_ros.library.paths import given_path
 from pierburg_ros.recording import Recording, read_recording
 from pierburg_ros.recording.recording import Samples
 from pierburg_ros.recording.signal_map import SignalMap, signal_map
@@ -47,7 +46,7 @@ def read(
 
         recording = pr.read("bench.csv", topics={"duty": "pwm"})
     """
-    place, chosen = given_path(path_of(path, "a recording, or the path of one"), "path"), signal_map(signals, topics or {})
+    place, chosen = path_of(path, "a recording, or the path of one"), signal_map(signals, topics or {})
     described = actuator if actuator is None or isinstance(actuator, Actuator) else read_actuator(actuator)
     preferred = () if described is None else (described.input, described.quantity)
     if described is not None:

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pierburg_ros.intake import path_of
 from pierburg_ros.library.output import output_folder
-from pierburg_ros.library.paths import given_path
 
 if TYPE_CHECKING:
     import pandas
@@ -56,7 +56,7 @@ class Result(ABC):
 
         The folder is made where it is missing; other files in it stay. InputError where it is a file.
         """
-        with output_folder(given_path(folder, "folder")) as temporary:
+        with output_folder(path_of(folder, "the folder for the results")) as temporary:
             self.write_into(temporary)
 
     def plot(self) -> go.Figure:

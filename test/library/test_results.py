@@ -129,9 +129,9 @@ def test_saving_writes_all_files_or_none(comparison, tmp_path, monkeypatch):
 
 
 def test_an_empty_path_is_refused_and_named(simulation, stiff):
-    uses = (pr.read, "path"), (simulation.save, "folder"), (stiff.export("json").write, "path")
-    for use, argument in (*uses, (partial(pr.fleet, "recordings"), "output")):
-        with pytest.raises(pr.InputError, match=f"`{argument}` is empty, expected a path"):
+    uses = (pr.read, "a recording"), (simulation.save, "the folder"), (stiff.export("json").write, "the path of a file")
+    for use, wanted in (*uses, (partial(pr.fleet, "recordings"), "the folder")):
+        with pytest.raises(pr.InputError, match=f"Found an empty path, expected {wanted}"):
             use("")
 
 
