@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pierburg_ros.intake import path_of
 from pierburg_ros.library.output import output_folder
 
 if TYPE_CHECKING:
@@ -56,6 +55,8 @@ class Result(ABC):
 
         The folder is made where it is missing; other files in it stay. InputError where it is a file.
         """
+        from pierburg_ros.intake import path_of
+
         with output_folder(path_of(folder, "the folder for the results")) as temporary:
             self.write_into(temporary)
 

@@ -102,6 +102,10 @@ def test_without_movement_nothing_is_claimed(tmp_path: Path) -> None:
     write_simulated(tmp_path / "still.mcap", time, np.zeros(time.size), hall)
     assert run(str(tmp_path / "still.mcap"), "--output", str(tmp_path / "out")) == 0
     document = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert document["verdict"] == "unexplained" and document["summary"].startswith("Nothing is concluded")
+    assert document["effects"] == [] and "The shaft never moves" in document["input_faults"][0]["evidence"]
+    assert run(str(tmp_path / "still.mcap"), "--force", "--output", str(tmp_path / "out")) == 0
+    document = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
     assert document["verdict"] == "consistent"
     assert document["effects"] == []
     assert document["data_quality"]["limits"]
