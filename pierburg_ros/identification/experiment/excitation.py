@@ -14,22 +14,32 @@ from pierburg_ros.identification.paper.lumps import lumps
 from pierburg_ros.plant import Model
 
 Random = np.random.Generator
+FAST = 0.6
+"""Share of the no-load speed that a free shaft reaches at the end of its range. Chosen: recipes go to nearly twice that
+duty."""
 
 
 @dataclass(frozen=True)
 class DutyRange:
-    """Duties [1] at which a shaft coming from rest begins to move and reaches the end of its travel."""
+    """Duties [1] at which a shaft coming from rest begins to move and reaches the end of its travel, or a high speed.
+
+    `turns`: nothing brings it back, so that shares below -1 drive it backwards.
+    """
 
     low: float
     high: float
+    turns: bool = False
 
     @staticmethod
     def of(model: Model) -> DutyRange:
-        """The range from the lumps of a spring-loaded model, or for a pendulum up to 60 degrees of deflection."""
-        if model.actuator.drive != "voltage" or model.actuator.load == "none":
+        """The range from the lumps of a spring-loaded model.
+
+        For a pendulum it is up to 60 degrees of deflection, and without a load up to `FAST`.
+        """
+        if model.actuator.drive != "voltage":
             raise InputError(
-                f"Actuator {model.actuator.name} has drive {model.actuator.drive} and load {model.actuator.load}; the "
-                "recipes are duties against a spring or a weight. Give an input of your own."
+                f"Actuator {model.actuator.name} has drive {model.actuator.drive}; the recipes are duties. Give an"
+                " input of your own."
             )
         if model.actuator.load == "spring":
             lump = lumps(model)
@@ -39,13 +49,18 @@ class DutyRange:
         per_duty = value["gear_ratio"] * value["torque_constant"] * value["supply_voltage"]
         scale = value["armature_resistance"] / per_duty
         low = value["coulomb_friction"] * scale
+        if model.actuator.load == "none":
+            return DutyRange(low, low + FAST, turns=True)
         return DutyRange(low, low + value["gravity_torque"] * math.sin(math.radians(60.0)) * scale)
 
     def at(self, share: float | Signal) -> Signal:
-        """Duty [1] at a `share` of the range; for negative shares it falls from `low`, to 0 at -1."""
+        """Duty [1] at a `share` of the range; for negative shares it falls from `low`, to 0 at -1, and goes on."""
         share = np.asarray(share, dtype=float)
         inside = self.low + share * (self.high - self.low)
-        return np.asarray(np.clip(np.where(share >= 0.0, inside, self.low * (1.0 + share)), -1.0, 1.0))
+        below = self.low * (1.0 + share)
+        if self.turns:
+            below = np.where(share < -1.0, (1.0 + share) * (self.high - self.low) - self.low, below)
+        return np.asarray(np.clip(np.where(share >= 0.0, inside, below), -1.0, 1.0))
 
 
 def held(time: Signal, random: Random, shortest: float, longest: float, draw: Callable[[], float]) -> Signal:

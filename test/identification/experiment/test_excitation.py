@@ -1,5 +1,7 @@
 """Recipes: within limits, repeatable, and moving the shaft as they say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.closed_form import FRICTION_ANGLE, GAIN, PRELOAD_ANGLE
@@ -40,6 +42,21 @@ def test_duty_stays_within_limits_and_repeats(name, actuator):
 def test_every_duty_recipe_moves_the_valve(name, nominal):
     recording = synthetic_recording(nominal, TIME, duty_sequence(name, nominal, TIME), noise=0.0)
     assert np.ptp(recording.measured) > 1.0
+
+
+@pytest.mark.parametrize("name", ["random_steps", "sharp_steps", "rich"])
+def test_a_shaft_that_nothing_brings_back_is_turned_both_ways_and_rests(name, nominal):
+    free = Model.nominal(replace(nominal.actuator, load="none"))
+    duty, span = duty_sequence(name, free, TIME), DutyRange.of(free)
+    least = (
+        nominal.values["coulomb_friction"]
+        * nominal.values["armature_resistance"]
+        / 0.022
+        / nominal.values["gear_ratio"]
+    )
+    assert span.low == pytest.approx(least / nominal.values["supply_voltage"])
+    shares = [np.mean(duty > span.low), np.mean(duty < -span.low), np.mean(np.abs(duty) < span.low)]
+    assert min(shares) > 0.1
 
 
 @pytest.mark.parametrize("name", SETPOINT_RECIPES)
