@@ -14,7 +14,7 @@ from pierburg_ros.identification.paper.lumps import lumps
 from pierburg_ros.plant import Model
 
 Random = np.random.Generator
-FAST = 0.6
+SPEED_REACHED = 0.6
 """Share of the no-load speed that a free shaft reaches at the end of its range. Chosen: recipes go to nearly twice that
 duty."""
 
@@ -34,7 +34,7 @@ class DutyRange:
     def of(model: Model) -> DutyRange:
         """The range from the lumps of a spring-loaded model.
 
-        For a pendulum it is up to 60 degrees of deflection, and without a load up to `FAST`.
+        For a pendulum it is up to 60 degrees of deflection, and without a load up to `SPEED_REACHED`.
         """
         if model.actuator.drive != "voltage":
             raise InputError(
@@ -50,7 +50,7 @@ class DutyRange:
         scale = value["armature_resistance"] / per_duty
         low = value["coulomb_friction"] * scale
         if model.actuator.load == "none":
-            return DutyRange(low, low + FAST, turns=True)
+            return DutyRange(low, low + SPEED_REACHED, turns=True)
         return DutyRange(low, low + value["gravity_torque"] * math.sin(math.radians(60.0)) * scale)
 
     def at(self, share: float | Signal) -> Signal:
