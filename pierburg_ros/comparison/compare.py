@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 
 from pierburg_ros.arrays import Signal
-from pierburg_ros.errors import InputError
-from pierburg_ros.inference.data import FIRST, refuse_others
 from pierburg_ros.inference.replay import resimulated
 from pierburg_ros.plant import Model
 from pierburg_ros.recording import Recording
@@ -107,16 +105,5 @@ class Comparison:
 
 def compare(model: Model, recording: Recording) -> Comparison:
     """`recording` beside the answer of `model` to its inputs, after each stretch of unknown input begun anew."""
-    refuse_others(recording, model.actuator)
-    refuse_short(recording)
     recording, simulated = resimulated(model, recording)
     return Comparison(recording, model, simulated)
-
-
-def refuse_short(recording: Recording) -> None:
-    """InputError where a recording has too few samples to begin a simulation with, none of them missing."""
-    if recording.time.size < 2 * FIRST:
-        raise InputError(
-            f"{recording.name} is too short ({recording.time.size} samples), expected at least {2 * FIRST}."
-            " Record longer."
-        )

@@ -165,7 +165,7 @@ WAYS = {"both": "", "positive": ", when the angle grows", "negative": ", when th
 """Directions in words."""
 
 
-def in_words(found: Sequence[RemainingShape], at: Lacking, motion: units.Motion = "rotary") -> str:
+def in_words(found: Sequence[RemainingShape], at: Lacking, motion: units.Motion) -> str:
     """The size of the missing torque, or force, and what it goes with."""
     word = torque_word(motion)
     if at.torque.size == 0:

@@ -32,7 +32,7 @@ BELOW = {name: p.below for name, p in DECLARED.items() if p.below is not None}
 """Parameters that stay below a base parameter, by dotted name."""
 
 STARTS, ENDS = (
-    tuple(f"{effect.id}.{moments[place]}" for effect in EFFECTS if (moments := moments_of(effect.id)))
+    frozenset(f"{effect.id}.{moments[place]}" for effect in EFFECTS if (moments := moments_of(effect.id)))
     for place in range(2)
 )
 """Moments at which an effect begins, and ends, by dotted name; an end of 0, never, is that of the recording."""
@@ -90,7 +90,7 @@ class Coordinates:
             if name in result:
                 highest = self.axes[self.names.index(name)].maximum
                 result[name] = min(result[name] + result.get(below, self.nominal.values[below]), highest)
-        for name in result.keys() & set(ENDS):
+        for name in result.keys() & ENDS:
             result[name] %= self.axes[self.names.index(name)].scale
         for name in result.keys() & ADDED.keys():
             result[name] = max(result[name], least_added(name, result, self.nominal))

@@ -254,6 +254,8 @@ def unknown_spans(recording: Recording, actuator: Actuator) -> list[Span]:
     Not those that are shorter than the actuator's own time, if a step between the inputs before and after one, at any
     moment in it, moves the shaft less.
     """
+    if not recording.unknown_input:
+        return []
     scales, command = actuator.scales, recording.command
     largest = float(np.max(np.abs(command.values), initial=0.0)) or 1.0
     speed = scales.reading / scales.time if recording.quantity != "position" else scales.angle / scales.time

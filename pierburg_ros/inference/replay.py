@@ -23,6 +23,11 @@ def parts_of(recording: Recording, actuator: Actuator) -> list[Recording]:
 
     A simulation begins anew in each, where its first samples show the shaft.
     """
+    if recording.time.size < 2 * FIRST:
+        raise InputError(
+            f"{recording.name} is too short ({recording.time.size} samples), expected at least {2 * FIRST}."
+            " Record longer."
+        )
     known, part = np.ones(recording.time.size, dtype=bool), np.zeros(recording.time.size, dtype=np.int64)
     for start, end in unknown_spans(recording, actuator):
         known &= (recording.time < start) | (recording.time > end + actuator.scales.time)

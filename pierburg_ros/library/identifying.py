@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pierburg_ros.comparison.compare import Comparison, refuse_short
+from pierburg_ros.comparison.compare import Comparison
 from pierburg_ros.identification.identify import Identification as Found
 from pierburg_ros.identification.identify import identify as identified
 from pierburg_ros.inference.replay import parts_of
@@ -125,8 +125,5 @@ def identify(
         identification.save("results/identified")
     """
     start = chosen_model(model, actuator if actuator or model else "pierburg")
-    given = recordings_of(recordings, start.actuator)
-    for each in given:
-        refuse_short(each)
-    measured = [part for each in given for part in parts_of(each, start.actuator)]
+    measured = [part for each in recordings_of(recordings, start.actuator) for part in parts_of(each, start.actuator)]
     return Identification(identified(start, measured, tuple(names(free)), tuple(names(fixed)), jobs), tuple(measured))

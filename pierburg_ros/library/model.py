@@ -91,14 +91,16 @@ def chosen_model(model: ModelLike | None, actuator: ActuatorLike | None = None) 
             raise InputError("Found a model and an actuator, and a model has its actuator. Leave the actuator out.")
         return Model.of(model)
     if model is not None:
-        if actuator is not None:
-            own, given = (each.actuator.name for each in (Model.read(model), Model.nominal(actuator)))
-            if own != given:
-                raise InputError(
-                    f"{model} is a model of {own} and --actuator found {given}, expected a description of {own}."
-                    " A model has its actuator: leave --actuator out."
-                )
-        return Model.read(model, actuator)
+        found = Model.read(model)
+        if actuator is None:
+            return found
+        own, described = found.actuator.name, Model.nominal(actuator).actuator
+        if own != described.name:
+            raise InputError(
+                f"{model} is a model of {own} and --actuator found {described.name}, expected a description of {own}."
+                " A model has its actuator: leave --actuator out."
+            )
+        return Model.read(model, described)
     if actuator is None:
         raise InputError("Found no model, expected one or the path of its file. Give pr.Model.nominal('pierburg').")
     return Model.nominal(actuator)

@@ -128,7 +128,7 @@ class SensorWatch:
         return course
 
     def _unmoved(self, block: Samples, course: Signal) -> Finding | None:
-        start, noise = float(np.mean(block.angle[: BLOCK_SAMPLES // 5])), self.usual_noise
+        start, noise = float(course[0]), self.usual_noise
         travel = abs(float(course[-1]) - start)
         moved = abs(float(np.mean(block.angle[-BLOCK_SAMPLES // 5 :])) - start)
         missing = noise > 0.0 and travel > ASLEEP * noise and moved < SEEN_SHARE * travel

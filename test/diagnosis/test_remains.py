@@ -57,7 +57,7 @@ def test_what_comes_in_one_direction_alone_is_said_so(sign):
     assert (found[0].over, found[0].form) == ("velocity", "square")
     assert found[0].direction == ("positive" if sign > 0.0 else "negative")
     assert 0.4 < found[0].share < 0.9
-    assert ", when the angle grows" in in_words(found[:1], lacked(one_way)) or sign < 0.0
+    assert ", when the angle grows" in in_words(found[:1], lacked(one_way), "rotary") or sign < 0.0
 
 
 def test_two_things_have_shares_of_what_each_is():
@@ -82,14 +82,14 @@ def test_noise_goes_with_nothing():
     noise = 0.1 * np.random.default_rng(7).standard_normal(SAMPLES)
     at = lacked(noise)
     assert shapes(at) == []
-    assert "goes with neither angle, velocity, load nor time" in in_words([], at)
+    assert "goes with neither angle, velocity, load nor time" in in_words([], at, "rotary")
 
 
 def test_a_shaft_that_hardly_moves_shows_no_torque():
     none = np.empty(0)
     at = Lacking(none, none, none, none, none, none, np.empty((0, 0)), False)
     assert shapes(at) == [] and torque_map(at) is None
-    assert "hardly moves" in in_words([], at)
+    assert "hardly moves" in in_words([], at, "rotary")
 
 
 def test_the_map_holds_the_torque_that_made_it():
@@ -128,7 +128,9 @@ def test_a_friction_that_the_simulator_has_is_missing_along_its_motion():
 
 def test_what_is_missing_has_its_word_and_unit():
     at = lacked(0.1 * VELOCITY)
-    assert " N.m (root mean square)" in in_words([], at) and in_words([], at).startswith("a torque of ")
+    assert " N.m (root mean square)" in in_words([], at, "rotary") and in_words([], at, "rotary").startswith(
+        "a torque of "
+    )
     assert " N (root mean square)" in in_words([], at, "linear") and in_words([], at, "linear").startswith(
         "a force of "
     )

@@ -140,9 +140,8 @@ def summary(
     if verdict != "unexplained":
         return f"{begun}The model lacks {listed}. {named}{also} {errors}"
     helped = f" Part of it is {listed}. {named}" if effects else ""
-    able, doubtful = (
-        [each for each in unsure if ((each.confidence or 0.0) >= least(each.id)) is sure] for sure in (True, False)
-    )
+    able = [each for each in unsure if (each.confidence or 0.0) >= least(each.id)]
+    doubtful = [each for each in unsure if each not in able]
     spare = f" Sure enough by itself, but not needed beside the rest: {_with_confidence(able)}." if able else ""
     not_sure = f" Not sure enough to be named: {_with_confidence(doubtful)}." if doubtful else ""
     rest = f"What remains is {left.looks_like}."
